@@ -1,0 +1,377 @@
+"""Which numbers decide? Every parameter once: name, type, default, unit, range, meaning.
+
+The YAML file, the ROS parameters, the command line and the tables of the documentation all come
+from this one model. The first group is the specification's table 1, by its own names and defaults.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from tracker.errors import ConfigError
+
+NODE_NAME = "hand_detector"
+
+
+def _parameter(
+    default: Any,
+    description: str,
+    *,
+    unit: str = "",
+    group: str,
+    live: bool = False,
+    **bounds: float,
+) -> Any:
+    """A field with its unit, its group in the documentation, and whether it may change live."""
+    extra = {"unit": unit, "group": group, "live": live}
+    return Field(default, description=description, json_schema_extra=extra, **bounds)  # type: ignore[arg-type]
+
+
+class Config(BaseModel):
+    """Every parameter of the tracker; see `Config.from_yaml` for files."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    # The specification's table 1.
+    processing_rate: float = _parameter(
+        10.0, "Images processed per second, on average; the others are passed over.",
+        unit="Hz", group="specification", live=True, gt=0.0, le=240.0,
+    )  # fmt: skip
+    downscale_factor: int = _parameter(
+        2, "The whole-frame search and the debug image work on the picture shrunk by this factor.",
+        group="specification", live=True, ge=1, le=16,
+    )  # fmt: skip
+    hand_raised_threshold: float = _parameter(
+        0.25, "`raise_rule: image`: how far the middle finger's tip must be above the wrist.",
+        unit="image heights", group="specification", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+    detection_confidence: float = _parameter(
+        0.6, "Score from which the palm search believes in a hand.",
+        group="specification", live=True, gt=0.0, lt=1.0,
+    )  # fmt: skip
+    tracking_confidence: float = _parameter(
+        0.5, "Landmark score from which a hand is followed into the next image.",
+        group="specification", live=True, gt=0.0, lt=1.0,
+    )  # fmt: skip
+    model_complexity: int = _parameter(
+        0, "Hand models: 0 lite (faster), 1 full (more accurate).",
+        group="specification", ge=0, le=1,
+    )  # fmt: skip
+    camera_fx: float = _parameter(
+        460.0, "Focal length along the columns of the full image, until a CameraInfo comes.",
+        unit="px", group="specification", live=True, gt=0.0, le=1e5,
+    )  # fmt: skip
+    camera_fy: float = _parameter(
+        460.0, "Focal length along the rows of the full image, until a CameraInfo comes.",
+        unit="px", group="specification", live=True, gt=0.0, le=1e5,
+    )  # fmt: skip
+    camera_cx: float = _parameter(
+        320.0, "Column of the principal point of the full image, until a CameraInfo comes.",
+        unit="px", group="specification", live=True, ge=-1e5, le=1e5,
+    )  # fmt: skip
+    camera_cy: float = _parameter(
+        240.0, "Row of the principal point of the full image, until a CameraInfo comes.",
+        unit="px", group="specification", live=True, ge=-1e5, le=1e5,
+    )  # fmt: skip
+
+    # Frames.
+    fixed_frame: str = _parameter(
+        "map", "Frame in which customers are tracked and poses are given.",
+        group="frames",
+    )  # fmt: skip
+    camera_frame: str = _parameter(
+        "camera_link", "The camera's frame; the image's own frame_id is used where this is empty.",
+        group="frames",
+    )  # fmt: skip
+    camera_axes: Literal["auto", "body", "optical"] = _parameter(
+        "auto", "Axes of the camera's frame: body (x forward, z up), optical (z forward, y down), "
+        "or auto (optical if its name holds `optical`).",
+        group="frames",
+    )  # fmt: skip
+    use_camera_info: bool = _parameter(
+        True, "Take intrinsics and distortion from CameraInfo when it comes.",
+        group="frames",
+    )  # fmt: skip
+    bearing_convention: Literal["rep103", "spec"] = _parameter(
+        "rep103", "Sign of the bearing: rep103 (left is positive) or spec (the original's, right is "
+        "positive, for robots whose frames were built around it).",
+        group="frames",
+    )  # fmt: skip
+    transform_wait_s: float = _parameter(
+        0.3, "How long an image may wait for the transform, and the scan, of its own stamp.",
+        unit="s", group="frames", live=True, ge=0.0, le=5.0,
+    )  # fmt: skip
+
+    # Perception.
+    raise_rule: Literal["palm", "image"] = _parameter(
+        "palm", "When is a hand up? palm: measured in palm lengths, at any distance; image: the "
+        "specification's shares of the image, up to 0.7 m.",
+        group="perception", live=True,
+    )  # fmt: skip
+    palm_raised_threshold: float = _parameter(
+        1.1, "`raise_rule: palm`: how far the middle finger's tip must be above the wrist.",
+        unit="palm lengths", group="perception", live=True, ge=0.0, le=3.0,
+    )  # fmt: skip
+    hand_span_threshold: float = _parameter(
+        0.15, "`raise_rule: image`: how far thumb and little finger must be apart.",
+        unit="image widths", group="perception", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+    max_hands: int = _parameter(
+        8, "Hands followed at a time; the search rests while so many are followed.",
+        group="perception", live=True, ge=1, le=64,
+    )  # fmt: skip
+    inference_threads: int = _parameter(
+        2, "Processor threads for the hand models.",
+        group="perception", ge=1, le=32,
+    )  # fmt: skip
+
+    # Ranging.
+    ranging: Literal["person", "spec"] = _parameter(
+        "person", "How far is the hand? person: the nearest person-sized segment of the scan beside "
+        "the hand's ray; spec: the median of the beams at the ray (algorithm 5).",
+        group="ranging", live=True,
+    )  # fmt: skip
+    scan_window_beams: int = _parameter(
+        3, "Beams to each side of the ray whose median counts (algorithm 5).",
+        unit="beams", group="ranging", live=True, ge=0, le=90,
+    )  # fmt: skip
+    scan_max_age_s: float = _parameter(
+        0.25, "A scan farther than this from the image's stamp is too old for it.",
+        unit="s", group="ranging", live=True, gt=0.0, le=10.0,
+    )  # fmt: skip
+    body_width_m: float = _parameter(
+        0.8, "Person-sized: half of this to each side of the hand's ray is searched, and no "
+        "segment wider than this is a person.",
+        unit="m", group="ranging", live=True, gt=0.1, le=2.0,
+    )  # fmt: skip
+    segment_jump_m: float = _parameter(
+        0.15, "Neighboring beams whose points are farther apart belong to different segments.",
+        unit="m", group="ranging", live=True, gt=0.0, le=2.0,
+    )  # fmt: skip
+    person_range_max_m: float = _parameter(
+        8.0, "Nobody farther than this is ranged.",
+        unit="m", group="ranging", live=True, gt=0.5, le=100.0,
+    )  # fmt: skip
+    scan_sustains: bool = _parameter(
+        True, "Person-sized segments keep customers alive and in place while their hand is down.",
+        group="ranging", live=True,
+    )  # fmt: skip
+    range_std_m: float = _parameter(
+        0.08, "Range noise of a person in the scan: the scanner's own, and legs that are no point.",
+        unit="m", group="ranging", live=True, gt=0.0, le=2.0,
+    )  # fmt: skip
+    hand_offset_std_m: float = _parameter(
+        0.2, "How far a raised hand stands beside the body, as standard deviation.",
+        unit="m", group="ranging", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+    wrist_std_px: float = _parameter(
+        2.0, "Noise of the wrist's column in the full image.",
+        unit="px", group="ranging", live=True, gt=0.0, le=100.0,
+    )  # fmt: skip
+    unknown_range_m: float = _parameter(
+        2.5, "Where the scan gives nothing, a new customer is supposed at this range ...",
+        unit="m", group="ranging", live=True, gt=0.1, le=20.0,
+    )  # fmt: skip
+    unknown_range_std_m: float = _parameter(
+        1.5, "... with this standard deviation.",
+        unit="m", group="ranging", live=True, gt=0.1, le=20.0,
+    )  # fmt: skip
+
+    # Tracking.
+    acceleration_density: float = _parameter(
+        0.3, "Process noise: power spectral density of people's acceleration.",
+        unit="m^2/s^3", group="tracking", live=True, gt=0.0, le=100.0,
+    )  # fmt: skip
+    initial_speed_std_mps: float = _parameter(
+        0.5, "Spread of the speed of a new customer, per axis.",
+        unit="m/s", group="tracking", live=True, gt=0.0, le=10.0,
+    )  # fmt: skip
+    gate_probability: float = _parameter(
+        0.99, "Share of true measurements that the gate lets through.",
+        group="tracking", live=True, gt=0.5, lt=1.0,
+    )  # fmt: skip
+    confirm_detections: int = _parameter(
+        2, "Raised-hand detections that make a customer ...",
+        unit="frames", group="tracking", live=True, ge=1, le=100,
+    )  # fmt: skip
+    confirm_window: int = _parameter(
+        3, "... out of so many processed frames.",
+        unit="frames", group="tracking", live=True, ge=1, le=100,
+    )  # fmt: skip
+    delete_after_s: float = _parameter(
+        3.0, "A customer whom neither hand nor scan has shown for so long is gone.",
+        unit="s", group="tracking", live=True, gt=0.0, le=3600.0,
+    )  # fmt: skip
+    forget_after_s: float = _parameter(
+        60.0, "A customer whose hand has not been up for so long is forgotten, seen or not.",
+        unit="s", group="tracking", live=True, gt=0.0, le=86400.0,
+    )  # fmt: skip
+    same_person_distance_m: float = _parameter(
+        0.45, "Two raised hands closer together than this belong to one person.",
+        unit="m", group="tracking", live=True, ge=0.0, le=2.0,
+    )  # fmt: skip
+    raise_streak: int = _parameter(
+        2, "Consecutive detections after which a hand counts as raised (algorithm 1).",
+        unit="frames", group="tracking", live=True, ge=1, le=1000,
+    )  # fmt: skip
+    lower_streak: int = _parameter(
+        3, "Consecutive misses after which it counts as lowered (algorithm 1).",
+        unit="frames", group="tracking", live=True, ge=1, le=1000,
+    )  # fmt: skip
+
+    # Selection and poses.
+    selection: Literal["first", "nearest", "newest"] = _parameter(
+        "first", "Who of several is served: whose hand went up first, who is nearest to the robot, "
+        "or whose hand went up last. Whoever is chosen stays chosen while the hand is up.",
+        group="selection", live=True,
+    )  # fmt: skip
+    selection_hold_s: float = _parameter(
+        0.0, "How long the chosen customer stays chosen after the hand went down.",
+        unit="s", group="selection", live=True, ge=0.0, le=3600.0,
+    )  # fmt: skip
+    pose_max_std_m: float = _parameter(
+        0.5, "A pose is given only while its standard deviation, along its worst axis, is below.",
+        unit="m", group="selection", live=True, gt=0.0, le=10.0,
+    )  # fmt: skip
+    pose_max_age_s: float = _parameter(
+        1.0, "A pose is given only while a measurement has touched the customer within this time.",
+        unit="s", group="selection", live=True, gt=0.0, le=60.0,
+    )  # fmt: skip
+    approach_distance_m: float = _parameter(
+        0.8, "How far in front of the customer the approach pose stands.",
+        unit="m", group="selection", live=True, gt=0.0, le=5.0,
+    )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _window_holds_detections(self) -> Config:
+        if self.confirm_detections > self.confirm_window:
+            raise ValueError(
+                f"confirm_detections is {self.confirm_detections}; it must not exceed "
+                f"confirm_window, which is {self.confirm_window}"
+            )
+        return self
+
+    @classmethod
+    def from_mapping(cls, values: dict[str, Any], origin: str = "configuration") -> Config:
+        """Check parameters that came from somewhere.
+
+        Args:
+            values: Parameter names and values; what is not named keeps its default.
+            origin: Where they came from, for the message.
+
+        Raises:
+            ConfigError: A name is unknown, a type wrong, a value out of range; the message names
+                each such key, its value and what is allowed.
+        """
+        for key, value in values.items():  # ROS tools write 8 for 8.0; the other way is a mistake
+            if type(value) is int and key in cls.model_fields:
+                if cls.model_fields[key].annotation is float:
+                    values = {**values, key: float(value)}
+        try:
+            return cls(**values)
+        except ValidationError as error:
+            reasons = "; ".join(_reason(item) for item in error.errors())
+            raise ConfigError(f"{origin}: {reasons}") from error
+
+    @classmethod
+    def from_yaml(cls, path: str | Path) -> Config:
+        """Read a ROS parameter file: `hand_detector: ros__parameters: ...`.
+
+        `/hand_detector`, `/**` and `**` are understood as node names; other nodes' parameters in
+        the same file are left alone, and so is ROS's own `use_sim_time`.
+
+        Raises:
+            ConfigError: The file cannot be read, is no such file, or a parameter is off.
+        """
+        import yaml  # the core imports with numpy, scipy and pydantic alone
+
+        path = Path(path)
+        try:
+            document = yaml.safe_load(path.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise ConfigError(f"{path}: cannot be read ({error.strerror}).") from error
+        except UnicodeDecodeError as error:
+            raise ConfigError(f"{path}: is no UTF-8 text; a YAML file is needed.") from error
+        except yaml.YAMLError as error:
+            mark = getattr(error, "problem_mark", None)
+            where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+            what = getattr(error, "problem", None) or "syntax error"
+            raise ConfigError(f"{path}: is no YAML{where}: {what}.") from error
+        return cls.from_mapping(_node_parameters(document, path), origin=str(path))
+
+    def replace(self, **changes: Any) -> Config:
+        """The same configuration with some parameters changed, checked again.
+
+        Raises:
+            ConfigError: As `from_mapping`.
+        """
+        return Config.from_mapping({**self.model_dump(), **changes})
+
+
+def allowed_values(name: str) -> str:
+    """What a parameter may be, in words: its type, its range or choices, its unit."""
+    info = Config.model_fields[name]
+    choices = getattr(info.annotation, "__args__", ())
+    if choices:
+        return "one of " + ", ".join(str(choice) for choice in choices)
+    words = {float: "a number", int: "a whole number", bool: "true or false", str: "a text"}
+    text = words[info.annotation]  # type: ignore[index]
+    symbols = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
+    bounds = [
+        f"{word} {getattr(item, attribute):g}"
+        for item in info.metadata
+        for attribute, word in symbols.items()
+        if getattr(item, attribute, None) is not None
+    ]
+    unit = parameter_extra(name)["unit"]
+    return " ".join(filter(None, [text, " and ".join(bounds), f"({unit})" if unit else ""]))
+
+
+def parameter_extra(name: str) -> dict[str, Any]:
+    """Unit, group and `live` (may it change while running) of a parameter."""
+    extra = Config.model_fields[name].json_schema_extra
+    assert isinstance(extra, dict)
+    return extra
+
+
+def _node_parameters(document: Any, path: Path) -> dict[str, Any]:
+    names = (NODE_NAME, f"/{NODE_NAME}", "/**", "**")
+    if not isinstance(document, dict):
+        raise ConfigError(
+            f"{path}: holds no parameters; `{NODE_NAME}: ros__parameters:` is needed."
+        )
+    found: dict[str, Any] = {}
+    nodes = [name for name in reversed(names) if name in document]
+    if not nodes:
+        raise ConfigError(
+            f"{path}: names the nodes {', '.join(map(str, document))}; needed is `{NODE_NAME}:`."
+        )
+    for name in nodes:
+        node = document[name]
+        parameters = node.get("ros__parameters") if isinstance(node, dict) else None
+        if not isinstance(parameters, dict):
+            raise ConfigError(
+                f"{path}: `{name}:` has no `ros__parameters:` with parameters below."
+            )
+        found.update(parameters)
+    found.pop("use_sim_time", None)
+    return found
+
+
+def _reason(item: Any) -> str:
+    name = ".".join(map(str, item["loc"]))
+    if item["type"] == "extra_forbidden":
+        return f"unknown parameter `{name}`{_suggestion(name)}"
+    if not name:
+        return str(item["msg"]).removeprefix("Value error, ")
+    return f"`{name}` is {item['input']!r}; allowed is {allowed_values(name)}"
+
+
+def _suggestion(name: str) -> str:
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, Config.model_fields, n=1)
+    return f"; did you mean `{close[0]}`?" if close else ""

@@ -1,0 +1,127 @@
+"""Which model files exist, where they come from, and what their inputs and outputs mean.
+
+The weights are Google's, under the Apache License 2.0, and are not part of this project: they are
+read out of the `mediapipe` wheel on the user's machine and converted there.
+"""
+
+from dataclasses import dataclass
+
+WHEEL_PROJECT = "mediapipe"
+WHEEL_VERSION = "0.10.21"
+WHEEL_BYTES = 35_622_638  # of the manylinux x86-64 wheel for Python 3.11; used for progress only
+LICENSE_NOTE = (
+    "Model weights (c) The MediaPipe Authors, Apache License 2.0, "
+    "from the PyPI wheel mediapipe 0.10.21"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ModelOutput:
+    """One output that the converted model keeps.
+
+    Attributes:
+        name: Its name in the ONNX file.
+        source_name: Its name in the TFLite file.
+    """
+
+    name: str
+    source_name: str
+
+
+@dataclass(frozen=True, slots=True)
+class ModelEntry:
+    """One model file of the wheel and what becomes of it.
+
+    Attributes:
+        name: What the project calls it; the ONNX file is `<name>.onnx`.
+        wheel_path: Path of the TFLite file inside the wheel.
+        sha256: Hash of that TFLite file, hexadecimal.
+        size_px: Side of the square input image the model was trained for.
+        input_range: Smallest and largest pixel value expected, for black and white.
+        outputs: The outputs to keep, in order; what only feeds others is left out.
+        size_is_free: Height and width may be any multiple of 32, not only `size_px`.
+    """
+
+    name: str
+    wheel_path: str
+    sha256: str
+    size_px: int
+    input_range: tuple[float, float]
+    outputs: tuple[ModelOutput, ...]
+    size_is_free: bool = False
+
+
+# Per anchor: center x, y, width, height, then x, y of each keypoint, all in pixels of the input
+# and relative to the anchor's center; scores are logits.
+_DETECTOR_OUTPUTS = (ModelOutput("boxes", "Identity"), ModelOutput("scores", "Identity_1"))
+
+# 21 x (x, y, z) in pixels of the input; probability that a hand is there; probability that it is a
+# right hand in a mirrored image; 21 x (x, y, z) in meters around the hand's center.
+_HAND_LANDMARK_OUTPUTS = (
+    ModelOutput("landmarks", "Identity"),
+    ModelOutput("presence", "Identity_1"),
+    ModelOutput("handedness", "Identity_2"),
+    ModelOutput("world_landmarks", "Identity_3"),
+)
+
+# 39 x (x, y, z in pixels of the input, visibility logit, presence logit); probability that a
+# person is there; 39 x (x, y, z) in meters around the hips. The segmentation mask (Identity_2)
+# and the heat maps (Identity_3) are left out, with the decoder that only they need.
+_POSE_LANDMARK_OUTPUTS = (
+    ModelOutput("landmarks", "Identity"),
+    ModelOutput("presence", "Identity_1"),
+    ModelOutput("world_landmarks", "Identity_4"),
+)
+
+MODELS = (
+    ModelEntry(
+        "palm_detection_lite",
+        "mediapipe/modules/palm_detection/palm_detection_lite.tflite",
+        "e9a4aaddf90dda56a87235303cf00e4c2d3fb28725f68fd88772997dac905c18",
+        192,
+        (0.0, 1.0),
+        _DETECTOR_OUTPUTS,
+        size_is_free=True,
+    ),
+    ModelEntry(
+        "palm_detection_full",
+        "mediapipe/modules/palm_detection/palm_detection_full.tflite",
+        "1b14e9422c6ad006cde6581a46c8b90dd573c07ab7f3934b5589e7cea3f89a54",
+        192,
+        (0.0, 1.0),
+        _DETECTOR_OUTPUTS,
+        size_is_free=True,
+    ),
+    ModelEntry(
+        "hand_landmark_lite",
+        "mediapipe/modules/hand_landmark/hand_landmark_lite.tflite",
+        "048edd3645c9bf7397d19a9f6e3a42957d6e414c9bea6598030a2e9b624156e6",
+        224,
+        (0.0, 1.0),
+        _HAND_LANDMARK_OUTPUTS,
+    ),
+    ModelEntry(
+        "hand_landmark_full",
+        "mediapipe/modules/hand_landmark/hand_landmark_full.tflite",
+        "11c272b891e1a99ab034208e23937a8008388cf11ed2a9d776ed3d01d0ba00e3",
+        224,
+        (0.0, 1.0),
+        _HAND_LANDMARK_OUTPUTS,
+    ),
+    ModelEntry(
+        "pose_detection",
+        "mediapipe/modules/pose_detection/pose_detection.tflite",
+        "9ba9dd3d42efaaba86b4ff0122b06f29c4122e756b329d89dca1e297fd8f866c",
+        224,
+        (-1.0, 1.0),
+        _DETECTOR_OUTPUTS,
+    ),
+    ModelEntry(
+        "pose_landmark_full",
+        "mediapipe/modules/pose_landmark/pose_landmark_full.tflite",
+        "e9a5c5cb17f736fafd4c2ec1da3b3d331d6edbe8a0d32395855aeb2cdfd64b9f",
+        256,
+        (0.0, 1.0),
+        _POSE_LANDMARK_OUTPUTS,
+    ),
+)
