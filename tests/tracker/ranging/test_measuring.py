@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+
+from tracker import Config, Hands
+from tracker.camera import CameraModel
+from tracker.geometry import RigidTransform
+from tracker.ranging import measure_people
+
+CAMERA = CameraModel(460.0, 460.0, 320.0, 240.0)
+AT_ORIGIN = RigidTransform()
+
+
+def hands_toward(*points, raised=True, right=None):
+    """Hands whose wrists stand at points (x, y) of the camera's body frame, 0.3 m up."""
+    count = len(points)
+    landmarks = np.zeros((count, 21, 2))
+    for row, (x, y) in enumerate(points):
+        wrist = np.array([320.0 - 460.0 * y / x, 240.0 - 460.0 * 0.3 / x])
+        landmarks[row] = wrist
+        landmarks[row, 12] = wrist - [0.0, 460.0 * 0.18 / x]
+    one = np.ones(count)
+    right = one if right is None else np.asarray(right, float)
+    return Hands(landmarks, one, right, np.full(count, raised), one)
+
+
+def positions(measurements):
+    angle = measurements.values[:, 0] + measurements.sensor_pose[:, 2]
+    direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    return measurements.sensor_pose[:, :2] + measurements.values[:, 1:] * direction
+
+
+def test_the_person_is_measured_not_the_wall_behind_the_hand(cast, legs):
+    scan = cast(legs(2.0, 0.3))
+    found = measure_people(
+        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
+    )
+    assert positions(found)[0] == pytest.approx([2.0, 0.3], abs=0.06)
+    assert found.raised.tolist() == [True]
+
+
+def test_ranging_spec_asks_the_beam_at_the_ray(cast, legs):
+    scan = cast(legs(2.0, 0.4), wall_m=4.0)
+    config = Config(ranging="spec", scan_sustains=False)
+    found = measure_people(hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), config)
+    assert found.values[0] == pytest.approx([0.0, 4.0], abs=1e-6)
+
+
+def test_ranging_spec_follows_the_ray_of_a_camera_beside_the_laser(cast):
+    laser = np.array([-0.3, -0.5, 1.0])
+    scan = cast([(2.0, 0.0, 0.3)], laser)
+    config = Config(ranging="spec", scan_sustains=False)
+    found = measure_people(hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, laser, config)
+    assert found.values[0] == pytest.approx([0.0, 1.7], abs=0.03)
+
+
+def test_of_two_people_at_the_ray_the_nearer_is_taken(cast, legs):
+    scan = cast(legs(1.2, 0.25) + legs(3.0, -0.1))
+    found = measure_people(
+        hands_toward((1.2, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
+    )
+    assert positions(found)[0] == pytest.approx([1.2, 0.25], abs=0.06)
+
+
+def test_without_a_scan_the_hand_is_a_bearing_only():
+    found = measure_people(hands_toward((2.0, 0.5)), CAMERA, AT_ORIGIN, None, None, Config())
+    assert found.values[0, 0] == pytest.approx(np.arctan2(0.5, 2.0))
+    assert np.isnan(found.values[0, 1])
+
+
+def test_other_people_in_the_scan_are_measured_as_not_raising(cast, legs):
+    scan = cast(legs(2.0, 0.2) + legs(2.0, -1.0))
+    found = measure_people(
+        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
+    )
+    assert found.raised.tolist() == [True, False]
+    assert positions(found)[1] == pytest.approx([2.0, -1.0], abs=0.06)
+    alone = measure_people(
+        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config(), sustain=False
+    )
+    assert len(alone) == 1
+
+
+def test_two_hands_at_one_body_name_the_same_person(cast, legs):
+    scan = cast(legs(2.0, 0.0))
+    found = measure_people(
+        hands_toward((2.0, 0.3), (2.0, -0.3)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
+    )
+    assert found.person[0] == found.person[1] >= 0
+
+
+def test_without_a_scan_a_left_and_a_right_hand_side_by_side_are_one_person():
+    hands = hands_toward((2.0, 0.3), (2.0, -0.3), right=[1.0, 0.0])
+    found = measure_people(hands, CAMERA, AT_ORIGIN, None, None, Config())
+    assert found.person[0] == found.person[1] >= 0
+
+
+def test_without_a_scan_two_right_hands_are_two_people():
+    hands = hands_toward((2.0, 0.3), (2.0, -0.3))
+    found = measure_people(hands, CAMERA, AT_ORIGIN, None, None, Config())
+    assert found.person.tolist() == [-1, -1]
+
+
+def test_the_scan_s_covariance_is_round_whatever_the_range(cast, legs):
+    scan = cast(legs(3.0, 0.0))
+    config = Config(range_std_m=0.1)
+    found = measure_people(hands_toward((3.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), config)
+    across_m = np.sqrt(found.covariance[0, 0, 0]) * found.values[0, 1]
+    assert across_m == pytest.approx(0.1)
+    assert np.sqrt(found.covariance[0, 1, 1]) == pytest.approx(0.1)

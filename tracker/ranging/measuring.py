@@ -1,0 +1,125 @@
+"""What do hands and scan together claim about people? Measurements with honest covariance."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.camera import CameraModel
+from tracker.config import Config
+from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measurements, Scan
+from tracker.geometry import RigidTransform, normalize_angle
+from tracker.ranging.hand_pairs import pair_hands
+from tracker.ranging.people import PersonClusters, find_people
+from tracker.ranging.person_range import nearest_person
+from tracker.ranging.ray_range import range_along_rays
+from tracker.ranging.rays import HandRays, hand_rays
+
+#: Numbers of picture pairs (`Measurements.person`) start here, above any cluster's row.
+_PAIR_OFFSET = 1_000_000
+
+
+def measure_people(
+    hands: Hands,
+    camera: CameraModel,
+    fixed_from_camera: RigidTransform,
+    scan: Scan | None,
+    laser_pose: FloatArray | None,
+    config: Config,
+    *,
+    sustain: bool = True,
+) -> Measurements:
+    """Turn one image's hands and the scan beside it into measurements in the fixed frame.
+
+    Args:
+        hands: What perception found.
+        camera: Intrinsics of the full image.
+        fixed_from_camera: The camera with body axes in the fixed frame, at the image's stamp.
+        scan: The scan nearest to the image in time; None where there is none.
+        laser_pose: x_m, y_m, yaw_rad of its laser at the scan's own stamp; None with no scan.
+        config: The ranging group.
+        sustain: Whether the scan's other person clusters are measurements too. One scan may serve
+            several images; it speaks for itself only once.
+
+    Returns:
+        First one row for each hand, then the clusters that no raised hand has claimed.
+    """
+    rays = hand_rays(hands, camera, fixed_from_camera, config)
+    pair = pair_hands(hands)
+    pair = np.where(pair >= 0, pair + _PAIR_OFFSET, -1)
+    people = PersonClusters.none()
+    if scan is not None and laser_pose is not None:
+        people = find_people(
+            scan,
+            laser_pose,
+            segment_jump_m=config.segment_jump_m,
+            body_width_m=config.body_width_m,
+            range_max_m=config.person_range_max_m,
+        )
+    if config.ranging == "spec":
+        claimed = np.full(len(hands), -1, dtype=np.int64)
+        range_m = np.full(len(hands), np.nan)
+        if scan is not None and laser_pose is not None:
+            range_m = range_along_rays(
+                rays, scan, laser_pose, config.scan_window_beams, config.segment_jump_m
+            )
+    else:
+        claimed = nearest_person(rays, people, config.body_width_m)
+        range_m = np.full(len(hands), np.nan)
+
+    from_hands = _hand_measurements(rays, range_m, hands, pair, config)
+    seen = claimed >= 0
+    if seen.any():
+        # The body itself is measured: the ray has only said which of them it is.
+        of_bodies = _body_measurements(
+            people.xy_m[claimed[seen]],
+            rays.origin,
+            config,
+            raised=hands.raised[seen],
+            person=claimed[seen],
+            hand=np.flatnonzero(seen),
+        )
+        from_hands = Measurements.concatenate(from_hands[~seen], of_bodies)
+    if not sustain or not config.scan_sustains or len(people) == 0:
+        return from_hands
+    free = np.setdiff1d(np.arange(len(people)), claimed[hands.raised])
+    from_scan = _body_measurements(
+        people.xy_m[free], rays.origin, config, raised=False, person=free, hand=-1
+    )
+    return Measurements.concatenate(from_hands, from_scan)
+
+
+def _hand_measurements(
+    rays: HandRays, range_m: FloatArray, hands: Hands, pair: IntArray, config: Config
+) -> Measurements:
+    """The hand's own ray; the body stands somewhere beside it, by `hand_offset_std_m`."""
+    supposed_m = np.where(np.isnan(range_m), config.unknown_range_m, range_m)
+    offset_std = np.arctan2(config.hand_offset_std_m, np.maximum(supposed_m, 0.3))
+    return Measurements.polar(
+        rays.bearing_rad,
+        range_m,
+        np.hypot(rays.bearing_std_rad, offset_std),
+        config.range_std_m,
+        rays.origin,
+        raised=hands.raised,
+        person=pair,
+        hand=np.arange(len(hands)),
+    )
+
+
+def _body_measurements(
+    xy_m: FloatArray,
+    origin: FloatArray,
+    config: Config,
+    *,
+    raised: BoolArray | bool,
+    person: IntArray,
+    hand: IntArray | int,
+) -> Measurements:
+    """Person clusters as bearing and range from the camera, noise alike in both directions."""
+    offset = xy_m - origin[:2]
+    range_m = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), 0.05)
+    bearing = normalize_angle(np.arctan2(offset[:, 1], offset[:, 0]) - origin[2])
+    std = config.range_std_m
+    return Measurements.polar(
+        bearing, range_m, std / range_m, std, origin, raised=raised, person=person, hand=hand
+    )

@@ -1,0 +1,69 @@
+"""In which direction of the map does a hand stand? From the wrist's pixel to a level bearing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracker.camera import CameraModel
+from tracker.config import Config
+from tracker.containers import FloatArray, Hands
+from tracker.geometry import RigidTransform, normalize_angle
+
+#: The quaternion that turns body axes (x forward) into optical ones (z forward, y down).
+_OPTICAL_FROM_BODY = RigidTransform(quaternion_xyzw=(0.5, -0.5, 0.5, 0.5))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HandRays:
+    """Level directions in which hands stand; row i is hand i of `Hands`.
+
+    Attributes:
+        origin: x_m, y_m, yaw_rad of the camera in the fixed frame.
+        bearing_rad: Shape (H,), from the camera's yaw, counter-clockwise.
+        bearing_std_rad: Shape (H,), of the pixel noise alone.
+    """
+
+    origin: FloatArray
+    bearing_rad: FloatArray
+    bearing_std_rad: FloatArray
+
+
+def hand_rays(
+    hands: Hands, camera: CameraModel, fixed_from_camera: RigidTransform, config: Config
+) -> HandRays:
+    """Turn each wrist's pixel into a bearing in the plane in which the robot drives.
+
+    The pixel is undistorted, its ray turned by the camera's whole attitude and projected onto the
+    plane. For a level camera that is minus the angle of equation 1 (plus, with
+    `bearing_convention: spec`).
+
+    Args:
+        hands: What perception found.
+        camera: Intrinsics of the full image.
+        fixed_from_camera: The camera with body axes (x forward) in the fixed frame; `body_pose`.
+        config: `bearing_convention` and `wrist_std_px`.
+    """
+    rays = camera.rays(hands.wrist_px)
+    if config.bearing_convention == "spec":
+        rays = rays * np.array([1.0, -1.0, 1.0])
+    level = fixed_from_camera.rotate(rays)
+    origin = fixed_from_camera.planar
+    bearing = normalize_angle(np.arctan2(level[:, 1], level[:, 0]) - origin[2])
+    # d(bearing) / d(column) of a pinhole is cos^2 / fx; a ray that climbs turns 1 / level faster.
+    level_share = np.maximum(np.hypot(level[:, 0], level[:, 1]), 0.1)
+    std = config.wrist_std_px / camera.fx * np.cos(bearing) ** 2 / level_share
+    return HandRays(origin, bearing, np.maximum(std, 1e-4))
+
+
+def body_pose(fixed_from_frame: RigidTransform, frame: str, axes: str) -> RigidTransform:
+    """The camera's pose with body axes (x forward), whatever axes its frame has.
+
+    Args:
+        fixed_from_frame: As looked up.
+        frame: The frame's name, which decides where `axes` is `auto`.
+        axes: `Config.camera_axes`.
+    """
+    is_optical = axes == "optical" or (axes == "auto" and "optical" in frame)
+    return fixed_from_frame @ _OPTICAL_FROM_BODY if is_optical else fixed_from_frame
