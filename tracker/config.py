@@ -23,11 +23,11 @@ def _parameter(
     unit: str = "",
     group: str,
     live: bool = False,
-    **bounds: float,
+    **bounds: Any,
 ) -> Any:
     """A field with its unit, its group in the documentation, and whether it may change live."""
-    extra = {"unit": unit, "group": group, "live": live}
-    return Field(default, description=description, json_schema_extra=extra, **bounds)  # type: ignore[arg-type]
+    extra: dict[str, Any] = {"unit": unit, "group": group, "live": live}
+    return Field(default, description=description, json_schema_extra=extra, **bounds)
 
 
 class Config(BaseModel):
@@ -96,12 +96,12 @@ class Config(BaseModel):
         group="frames",
     )  # fmt: skip
     bearing_convention: Literal["rep103", "spec"] = _parameter(
-        "rep103", "Sign of the bearing: rep103 (left is positive) or spec (the original's, right is "
-        "positive, for robots whose frames were built around it).",
+        "rep103", "Sign of the bearing: rep103 (left is positive) or spec (the original's, right "
+        "is positive, for robots whose frames were built around it).",
         group="frames",
     )  # fmt: skip
     transform_wait_s: float = _parameter(
-        0.3, "How long an image may wait for the transform, and the scan, of its own stamp.",
+        0.3, "How long an image may wait for the transform at its own stamp.",
         unit="s", group="frames", live=True, ge=0.0, le=5.0,
     )  # fmt: skip
 
@@ -130,8 +130,8 @@ class Config(BaseModel):
 
     # Ranging.
     ranging: Literal["person", "spec"] = _parameter(
-        "person", "How far is the hand? person: the nearest person-sized segment of the scan beside "
-        "the hand's ray; spec: the median of the beams at the ray (algorithm 5).",
+        "person", "How far is the hand? person: the nearest person-sized segment of the scan "
+        "beside the hand's ray; spec: the median of the beams at the ray (algorithm 5).",
         group="ranging", live=True,
     )  # fmt: skip
     scan_window_beams: int = _parameter(
@@ -160,7 +160,7 @@ class Config(BaseModel):
         group="ranging", live=True,
     )  # fmt: skip
     range_std_m: float = _parameter(
-        0.08, "Range noise of a person in the scan: the scanner's own, and legs that are no point.",
+        0.08, "Range noise of a person in the scan: the scanner's own, and legs are no point.",
         unit="m", group="ranging", live=True, gt=0.0, le=2.0,
     )  # fmt: skip
     hand_offset_std_m: float = _parameter(
@@ -224,8 +224,8 @@ class Config(BaseModel):
 
     # Selection and poses.
     selection: Literal["first", "nearest", "newest"] = _parameter(
-        "first", "Who of several is served: whose hand went up first, who is nearest to the robot, "
-        "or whose hand went up last. Whoever is chosen stays chosen while the hand is up.",
+        "first", "Who of several is served: whose hand went up first, who is nearest to the "
+        "robot, or whose hand went up last. Whoever is chosen stays chosen while the hand is up.",
         group="selection", live=True,
     )  # fmt: skip
     selection_hold_s: float = _parameter(
@@ -271,7 +271,7 @@ class Config(BaseModel):
                 if cls.model_fields[key].annotation is float:
                     values = {**values, key: float(value)}
         try:
-            return cls(**values)
+            return cls.model_validate(values)
         except ValidationError as error:
             reasons = "; ".join(_reason(item) for item in error.errors())
             raise ConfigError(f"{origin}: {reasons}") from error
@@ -300,6 +300,8 @@ class Config(BaseModel):
             where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
             what = getattr(error, "problem", None) or "syntax error"
             raise ConfigError(f"{path}: is no YAML{where}: {what}.") from error
+        except ValueError as error:  # a date that is none, for one
+            raise ConfigError(f"{path}: holds a value that is none ({error}).") from error
         return cls.from_mapping(_node_parameters(document, path), origin=str(path))
 
     def replace(self, **changes: Any) -> Config:
@@ -363,7 +365,7 @@ def _node_parameters(document: Any, path: Path) -> dict[str, Any]:
 
 def _reason(item: Any) -> str:
     name = ".".join(map(str, item["loc"]))
-    if item["type"] == "extra_forbidden":
+    if name and name not in Config.model_fields:
         return f"unknown parameter `{name}`{_suggestion(name)}"
     if not name:
         return str(item["msg"]).removeprefix("Value error, ")

@@ -1,0 +1,6 @@
+"""Measurements -> Tracks: predict, gate, associate, update, life cycle, streaks, selection."""
+
+from tracker.tracking.person_tracker import PersonTracker
+from tracker.tracking.poses import approach_pose, customer_pose
+
+__all__ = ["PersonTracker", "approach_pose", "customer_pose"]

@@ -1,0 +1,170 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from tracker import Config, Measurements, PersonTracker
+from tracker.errors import ClockError
+
+PERIOD_NS = 100_000_000
+NOISE = 0.08**2 * np.eye(2)
+
+
+def raised_at(*points):
+    return Measurements.cartesian(np.array(points, float).reshape(-1, 2), NOISE)
+
+
+def seen_at(*points):
+    return Measurements.cartesian(np.array(points, float).reshape(-1, 2), NOISE, raised=False)
+
+
+def run(tracker, frames, start=0):
+    for number, claims in enumerate(frames, start):
+        tracks = tracker.step(number * PERIOD_NS, claims)
+    return tracks
+
+
+def test_two_raised_hands_make_a_customer():
+    tracker = PersonTracker()
+    first = run(tracker, [raised_at((2, 1))])
+    assert not first.confirmed.any()
+    assert not first.raised.any()
+    second = run(tracker, [raised_at((2, 1))], start=1)
+    assert second.confirmed.all()
+    assert second.raised.all()
+    assert second.selected_id == second.id[0] == 1
+    assert second.mean[0] == pytest.approx([2, 1, 0, 0], abs=1e-6)
+
+
+def test_one_raised_hand_and_no_more_is_forgotten():
+    tracker = PersonTracker()
+    tracks = run(tracker, [raised_at((2, 1)), *[Measurements.none()] * 2])
+    assert len(tracks) == 0
+
+
+def test_people_who_do_not_raise_a_hand_are_no_customers():
+    assert len(run(PersonTracker(), [seen_at((2, 1))] * 10)) == 0
+
+
+def test_a_lowered_hand_lowers_the_streak_and_not_existence():
+    tracker = PersonTracker()
+    up = run(tracker, [raised_at((2, 1))] * 5)
+    down = run(tracker, [seen_at((2, 1))] * 50, start=5)
+    assert down.raised.tolist() == [False]
+    assert down.selected_id is None
+    assert down.existence[0] >= up.existence[0]
+    assert down.id.tolist() == up.id.tolist()
+
+
+def test_the_same_hand_up_again_is_the_same_person():
+    tracker = PersonTracker()
+    run(tracker, [raised_at((2, 1))] * 5)
+    run(tracker, [seen_at((2, 1))] * 100, start=5)
+    again = run(tracker, [raised_at((2.05, 1))] * 3, start=105)
+    assert again.id.tolist() == [1]
+    assert again.raised.tolist() == [True]
+
+
+def test_a_customer_whom_nothing_shows_is_gone_after_delete_after_s():
+    tracker = PersonTracker(Config(delete_after_s=2.0))
+    run(tracker, [raised_at((2, 1))] * 5)
+    assert len(run(tracker, [Measurements.none()] * 20, start=5)) == 1
+    assert len(run(tracker, [Measurements.none()], start=25)) == 0
+
+
+def test_a_customer_who_does_not_call_is_forgotten_after_forget_after_s():
+    tracker = PersonTracker(Config(forget_after_s=3.0))
+    run(tracker, [raised_at((2, 1))] * 5)
+    assert len(run(tracker, [seen_at((2, 1))] * 40, start=5)) == 0
+
+
+def test_two_people_are_two_customers_with_streaks_of_their_own():
+    tracker = PersonTracker()
+    run(tracker, [raised_at((2, 1), (2, -1))] * 5)
+    tracks = run(tracker, [raised_at((2, -1))] * 4, start=5)
+    assert tracks.id.tolist() == [1, 2]
+    assert tracks.raised.tolist() == [False, True]
+    assert tracks.selected_id == 2
+
+
+def test_two_raised_hands_of_one_person_count_once():
+    tracker = PersonTracker()
+    tracks = run(tracker, [raised_at((2, 0.15), (2, -0.15))] * 5)
+    assert len(tracks) == 1
+
+
+def test_two_raised_hands_at_one_scan_segment_count_once_however_far_apart():
+    claims = Measurements.cartesian([[2, 0.6], [2, -0.6]], NOISE, person=[3, 3])
+    assert len(run(PersonTracker(), [claims] * 5)) == 1
+
+
+def test_crossing_people_keep_their_identities():
+    tracker = PersonTracker()
+    rng = np.random.default_rng(1)
+    for number in range(60):
+        y = -1.5 + 0.05 * number
+        points = np.array([[2.0, y], [2.6, -y]]) + rng.normal(scale=0.05, size=(2, 2))
+        tracks = tracker.step(number * PERIOD_NS, raised_at(*points))
+    assert tracks.id.tolist() == [1, 2]
+    assert tracks.mean[0, 1] > 1.0
+    assert tracks.mean[1, 1] < -1.0
+    assert tracks.mean[:, 3] == pytest.approx([0.5, -0.5], abs=0.25)
+
+
+def test_bearings_alone_raise_a_hand_too():
+    tracker = PersonTracker()
+    tracks = run(tracker, [Measurements.polar(0.2, np.nan, 0.05, 0.1)] * 3)
+    assert tracks.raised.tolist() == [True]
+    assert np.sqrt(np.linalg.eigvalsh(tracks.covariance[0, :2, :2])[-1]) > 1.0
+
+
+def test_a_jump_back_of_the_clock_forgets_everybody_and_reuses_no_identity():
+    tracker = PersonTracker()
+    run(tracker, [raised_at((2, 1))] * 3, start=100)
+    assert len(tracker.step(0, Measurements.none())) == 0
+    tracks = run(tracker, [raised_at((2, 1))] * 3, start=1)
+    assert tracks.id.tolist() == [2]
+
+
+def test_identities_belong_to_the_tracker():
+    assert run(PersonTracker(), [raised_at((2, 1))]).id.tolist() == [1]
+    assert run(PersonTracker(), [raised_at((2, 1))]).id.tolist() == [1]
+
+
+def test_time_steps_come_from_stamps():
+    tracker = PersonTracker()
+    stamps = [0, 70_000_000, 180_000_000, 250_000_000, 390_000_000, 1_000_000_000]
+    for stamp in stamps:
+        tracks = tracker.step(stamp, raised_at((1.0 + stamp / 1e9, 0.0)))
+    assert tracks.mean[0, 2] == pytest.approx(1.0, abs=0.2)
+
+
+def test_a_negative_stamp_is_an_error():
+    with pytest.raises(ClockError, match="-1"):
+        PersonTracker().step(-1, Measurements.none())
+
+
+def test_changed_parameters_keep_the_tracks():
+    tracker = PersonTracker()
+    run(tracker, [raised_at((2, 1))] * 5)
+    tracker.config = Config(confirm_window=5, lower_streak=1)
+    tracks = run(tracker, [seen_at((2, 1))], start=5)
+    assert tracks.id.tolist() == [1]
+    assert tracks.raised.tolist() == [False]
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    values=hnp.arrays(float, (6, 2), elements=st.floats(allow_nan=True, allow_infinity=True)),
+    noise=hnp.arrays(float, (6, 2, 2), elements=st.floats(allow_nan=True, allow_infinity=True)),
+    stamp_ns=st.integers(0, 10**18),
+)
+def test_no_well_typed_input_breaks_a_step(values, noise, stamp_ns):
+    tracker = PersonTracker()
+    run(tracker, [raised_at((2, 1), (1, 0))] * 3)
+    with np.errstate(all="ignore"):
+        tracker.step(stamp_ns, Measurements.cartesian(values, noise))
+    tracks = tracker.step(stamp_ns, raised_at((2, 1)))
+    assert np.isfinite(tracks.mean).all()
+    assert (np.linalg.eigvalsh(tracks.covariance) > 0).all()
