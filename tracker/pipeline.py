@@ -1,0 +1,260 @@
+"""The whole way of one frame, used alike by replay, the nodes and the evaluation.
+
+    image -> perception -> Hands -> ranging (+ scan, transforms) -> Measurements -> tracking
+
+Sensor data are pushed in as they come; images wait for the transform of their own stamp. Time is
+the data's own: nothing here reads a clock.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+
+from tracker.camera import CameraModel
+from tracker.config import Config
+from tracker.containers import CameraImage, FloatArray, FrameResult, Scan
+from tracker.errors import TransformError
+from tracker.geometry import RigidTransform
+from tracker.perception.detector import HandDetector
+from tracker.ranging import body_pose, measure_people
+from tracker.rate_limiter import RateLimiter
+from tracker.tracking import PersonTracker, approach_pose, customer_pose
+from tracker.transforms import StampedTransform, TransformBuffer
+
+#: Scans remembered, and images that may wait at a time; older ones give way.
+_SCANS_KEPT = 40
+_IMAGES_WAITING = 16
+
+
+class Pipeline:
+    """From sensor data to customers.
+
+    Push data with `add_transform`, `add_scan`, `set_camera` and `add_image`, then take finished
+    frames from `advance`. Or call `process` for one image at once.
+
+    Args:
+        config: Every parameter.
+        detector: Finds hands; by default MediaPipe's models on ONNX Runtime.
+    """
+
+    def __init__(self, config: Config | None = None, detector: HandDetector | None = None) -> None:
+        self.config = config or Config()
+        if detector is None:
+            from tracker.perception import HandFinder
+
+            detector = HandFinder(self.config)
+        self.detector = detector
+        self.tracker = PersonTracker(self.config)
+        self.transforms = TransformBuffer()
+        self.camera = _configured_camera(self.config)
+        self._limiter = RateLimiter(self.config.processing_rate)
+        self._scans: deque[Scan] = deque(maxlen=_SCANS_KEPT)
+        self._waiting: deque[CameraImage] = deque(maxlen=_IMAGES_WAITING)
+        self._sustained_by: Scan | None = None
+        self._last_stamp_ns = -1
+        self._camera_pose: RigidTransform | None = None
+        self._notes: list[str] = []
+
+    def add_transform(self, sample: StampedTransform) -> None:
+        """Take in one transform.
+
+        Raises:
+            TransformError: It is unusable; see `TransformBuffer.add`.
+        """
+        self.transforms.add(sample)
+
+    def add_scan(self, scan: Scan) -> None:
+        """Take in one scan."""
+        self._scans.append(scan)
+
+    def set_camera(self, camera: CameraModel) -> None:
+        """Take in calibrated intrinsics, unless `use_camera_info` is off."""
+        if self.config.use_camera_info:
+            self.camera = camera
+
+    def add_image(self, image: CameraImage) -> bool:
+        """Queue an image, if it is its turn at `processing_rate`.
+
+        Returns:
+            Whether it will be processed.
+        """
+        if not self._limiter.admits(image.stamp_ns):
+            return False
+        self._waiting.append(image)
+        return True
+
+    def advance(self, now_ns: int | None = None) -> Iterator[tuple[CameraImage, FrameResult]]:
+        """Process the images whose turn has come, in order.
+
+        An image's turn comes when the transform of its stamp is there, or when it has waited for
+        `transform_wait_s`.
+
+        Args:
+            now_ns: Data time; None means that nothing more will come, so nobody waits any longer.
+        """
+        while self._waiting:
+            image = self._waiting[0]
+            patience_ns = _seconds(self.config.transform_wait_s)
+            waited = now_ns is None or abs(now_ns - image.stamp_ns) >= patience_ns
+            if not waited and not self._is_located(image):
+                return
+            self._waiting.popleft()
+            yield image, self.process(image)
+
+    def process(self, image: CameraImage) -> FrameResult:
+        """The way of one frame, now.
+
+        Returns:
+            What came of it. Missing transforms and scans are no errors: they are noted, hands are
+            still reported, and no pose is given that is not known.
+        """
+        self._notes = []
+        if image.stamp_ns < self._last_stamp_ns:
+            self._jump_back(image)
+        self._last_stamp_ns = image.stamp_ns
+
+        hands = self.detector.find(image)
+        fixed_from_camera, is_located = self._locate_camera(image)
+        scan, laser_pose = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
+        measurements = measure_people(
+            hands,
+            self.camera,
+            fixed_from_camera,
+            scan,
+            laser_pose,
+            self.config,
+            sustain=scan is not self._sustained_by,
+        )
+        self._sustained_by = scan
+        robot_xy_m = fixed_from_camera.planar[:2]
+        tracks = self.tracker.step(image.stamp_ns, measurements, robot_xy_m)
+        pose = approach = None
+        if is_located:
+            pose = customer_pose(tracks, robot_xy_m, self.config.fixed_frame, self.config)
+        if pose is not None:
+            approach = approach_pose(pose, robot_xy_m, self.config.approach_distance_m)
+        return FrameResult(
+            stamp_ns=image.stamp_ns,
+            hands=hands,
+            measurements=measurements,
+            tracks=tracks,
+            hand_raised=bool(tracks.raised.any()),
+            customer_pose=pose,
+            approach_pose=approach,
+            sensor_pose=fixed_from_camera.planar if is_located else None,
+            scan=scan,
+            scan_pose=laser_pose,
+            notes=tuple(self._notes),
+        )
+
+    def configure(self, config: Config) -> None:
+        """Change parameters while running; tracks stay.
+
+        Only parameters that are `live` take effect (`tracker.config.parameter_extra`).
+        """
+        if config.processing_rate != self.config.processing_rate:
+            self._limiter.set_rate(config.processing_rate)
+        if _configured_camera(config) != _configured_camera(self.config):
+            self.camera = _configured_camera(config)
+        self.config = self.tracker.config = config
+        self.detector.configure(config)
+
+    def reset(self) -> None:
+        """Forget people, scans, moving transforms and waiting images."""
+        self.tracker.reset()
+        self.detector.reset()
+        self.transforms.clear()
+        self._limiter.reset()
+        self._scans.clear()
+        self._waiting.clear()
+        self._camera_pose = None
+        self._last_stamp_ns = -1
+
+    def _jump_back(self, image: CameraImage) -> None:
+        back_s = (self._last_stamp_ns - image.stamp_ns) / 1e9
+        self._notes.append(f"stamps jumped back by {back_s:.3f} s: tracks were reset")
+        self.tracker.reset()
+        self.detector.reset()
+        self.transforms.forget_after(image.stamp_ns)
+        self._scans = deque(
+            (scan for scan in self._scans if scan.stamp_ns <= image.stamp_ns), maxlen=_SCANS_KEPT
+        )
+        self._sustained_by = None
+        self._camera_pose = None
+
+    def _camera_frame(self, image: CameraImage) -> str:
+        return self.config.camera_frame or image.frame_id
+
+    def _is_located(self, image: CameraImage) -> bool:
+        return self.transforms.can_lookup(
+            self.config.fixed_frame, self._camera_frame(image), image.stamp_ns
+        )
+
+    def _locate_camera(self, image: CameraImage) -> tuple[RigidTransform, bool]:
+        """The camera in the fixed frame, and whether that is known.
+
+        Before the first transform the camera itself is the fixed frame: hands are still told apart
+        and counted. Where a transform is missing later, the camera is supposed where it was.
+        """
+        frame = self._camera_frame(image)
+        try:
+            found = self.transforms.lookup(self.config.fixed_frame, frame, image.stamp_ns)
+        except TransformError as error:
+            self._notes.append(f"no pose: {error}")
+            if self._camera_pose is None:
+                return RigidTransform(), False
+            return self._camera_pose, False
+        if self._camera_pose is None and self.tracker.has_tracks:
+            self._notes.append(
+                "the first transform has come: tracks begin anew in the fixed frame"
+            )
+            self.tracker.reset()
+        self._camera_pose = body_pose(found, frame, self.config.camera_axes)
+        return self._camera_pose, True
+
+    def _nearest_scan(
+        self, stamp_ns: int, fixed_from_camera: RigidTransform, is_located: bool
+    ) -> tuple[Scan | None, FloatArray | None]:
+        """The scan nearest to a stamp, and its laser in the fixed frame at its own stamp."""
+        if not self._scans:
+            self._notes.append("no scan has come")
+            return None, None
+        scan = min(self._scans, key=lambda candidate: abs(candidate.stamp_ns - stamp_ns))
+        age_s = abs(scan.stamp_ns - stamp_ns) / 1e9
+        if age_s > self.config.scan_max_age_s:
+            limit_s = self.config.scan_max_age_s
+            self._notes.append(f"no scan within {limit_s:g} s: the nearest is {age_s:.3f} s off")
+            return None, None
+        if len(scan.ranges_m) == 0:
+            self._notes.append("the scan has no beams")
+            return None, None
+        if not is_located:
+            return scan, self._laser_beside_camera(scan, fixed_from_camera).planar
+        try:
+            laser = self.transforms.lookup(self.config.fixed_frame, scan.frame_id, scan.stamp_ns)
+        except TransformError as error:
+            self._notes.append(f"scan unused: {error}")
+            return None, None
+        return scan, laser.planar
+
+    def _laser_beside_camera(
+        self, scan: Scan, fixed_from_camera: RigidTransform
+    ) -> RigidTransform:
+        """The laser by its mounting beside the camera; the same place where that is unknown."""
+        frame = self.config.camera_frame
+        try:
+            mounting = self.transforms.lookup(scan.frame_id, frame, scan.stamp_ns)
+        except TransformError:
+            self._notes.append("no mounting of the laser: it is taken to be the camera's")
+            return fixed_from_camera
+        laser_from_camera = body_pose(mounting, frame, self.config.camera_axes)
+        return fixed_from_camera @ laser_from_camera.inverse()
+
+
+def _configured_camera(config: Config) -> CameraModel:
+    return CameraModel(config.camera_fx, config.camera_fy, config.camera_cx, config.camera_cy)
+
+
+def _seconds(value_s: float) -> int:
+    return round(value_s * 1e9)
