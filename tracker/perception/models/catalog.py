@@ -6,9 +6,13 @@ read out of the `mediapipe` wheel on the user's machine and converted there.
 
 from dataclasses import dataclass
 
-WHEEL_PROJECT = "mediapipe"
-WHEEL_VERSION = "0.10.21"
-WHEEL_BYTES = 35_622_638  # of the manylinux x86-64 wheel for Python 3.11; used for progress only
+from tracker.errors import ModelFileError
+
+# Raise it with every change that alters the converted files: files of other versions are stale.
+CONVERTER_VERSION = 1
+
+WHEEL_REQUIREMENT = "mediapipe==0.10.21"  # the last series that carries the model files
+WHEEL_BYTES = 35_622_638  # of the x86-64 Linux wheel for Python 3.11; for progress and messages
 LICENSE_NOTE = (
     "Model weights (c) The MediaPipe Authors, Apache License 2.0, "
     "from the PyPI wheel mediapipe 0.10.21"
@@ -51,12 +55,14 @@ class ModelEntry:
     size_is_free: bool = False
 
 
-# Per anchor: center x, y, width, height, then x, y of each keypoint, all in pixels of the input
-# and relative to the anchor's center; scores are logits.
+# Per anchor a box and K keypoints: x, y of the box's center, its width and height, then x, y of
+# each keypoint (palm K = 7, pose K = 4); positions count from the anchor's center, all in pixels
+# of the input. Scores are logits.
 _DETECTOR_OUTPUTS = (ModelOutput("boxes", "Identity"), ModelOutput("scores", "Identity_1"))
 
 # 21 x (x, y, z) in pixels of the input; probability that a hand is there; probability that it is a
-# right hand in a mirrored image; 21 x (x, y, z) in meters around the hand's center.
+# right hand (MediaPipe calls it "Left", as it takes the image for a mirrored one); 21 x (x, y, z)
+# in meters around the hand's center.
 _HAND_LANDMARK_OUTPUTS = (
     ModelOutput("landmarks", "Identity"),
     ModelOutput("presence", "Identity_1"),
@@ -65,8 +71,9 @@ _HAND_LANDMARK_OUTPUTS = (
 )
 
 # 39 x (x, y, z in pixels of the input, visibility logit, presence logit); probability that a
-# person is there; 39 x (x, y, z) in meters around the hips. The segmentation mask (Identity_2)
-# and the heat maps (Identity_3) are left out, with the decoder that only they need.
+# person is there; 39 x (x, y, z) in meters around the hips. Two outputs are left out with what
+# only they need: the segmentation mask (Identity_2, two thirds of the whole model's time) and the
+# heat maps (Identity_3, a tenth of the rest).
 _POSE_LANDMARK_OUTPUTS = (
     ModelOutput("landmarks", "Identity"),
     ModelOutput("presence", "Identity_1"),
@@ -125,3 +132,16 @@ MODELS = (
         _POSE_LANDMARK_OUTPUTS,
     ),
 )
+
+
+def find_model(name: str) -> ModelEntry:
+    """The catalog's entry of a name.
+
+    Raises:
+        ModelFileError: There is no such model; the message lists those there are.
+    """
+    for entry in MODELS:
+        if entry.name == name:
+            return entry
+    known = ", ".join(entry.name for entry in MODELS)
+    raise ModelFileError(f"There is no model '{name}'; choose one of {known}.")

@@ -158,4 +158,4 @@ def _read_index_vector(table: Any, kind: int) -> NDArray[np.int64]:
         tflite.SparseIndexVector.Uint8Vector: tflite.Uint8Vector,
     }[kind]()
     vector.Init(table.Bytes, table.Pos)
-    return np.array([vector.Values(i) for i in range(vector.ValuesLength())], np.int64)
+    return np.asarray(vector.ValuesAsNumpy(), np.int64)

@@ -1,0 +1,35 @@
+"""What tests in several folders share."""
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+
+import pytest
+
+from tracker.errors import ModelFileError
+from tracker.perception.models import ModelStore, ensure_models
+
+
+@pytest.fixture(scope="session")
+def skip_when_offline() -> Callable[[], AbstractContextManager[None]]:
+    """Around a download: without a network the test is skipped, but never in CI."""
+
+    @contextmanager
+    def guard() -> Iterator[None]:
+        try:
+            yield
+        except ModelFileError as error:
+            if "no connection" not in str(error) or os.environ.get("CI"):
+                raise
+            pytest.skip(str(error))
+
+    return guard
+
+
+@pytest.fixture(scope="session")
+def model_store(skip_when_offline: Callable[[], AbstractContextManager[None]]) -> ModelStore:
+    """The user's model files; the first run fetches them."""
+    store = ModelStore()
+    with skip_when_offline():
+        ensure_models(store)
+    return store

@@ -1,0 +1,19 @@
+"""Model files: which there are, where they live, and how they get there."""
+
+from tracker.perception.models.catalog import MODELS, ModelEntry, ModelOutput, find_model
+from tracker.perception.models.fetch import ensure_models, fetch_models
+from tracker.perception.models.store import ModelState, ModelStatus, ModelStore
+from tracker.perception.models.wheel import Progress
+
+__all__ = [
+    "MODELS",
+    "ModelEntry",
+    "ModelOutput",
+    "ModelState",
+    "ModelStatus",
+    "ModelStore",
+    "Progress",
+    "ensure_models",
+    "fetch_models",
+    "find_model",
+]
