@@ -1,0 +1,23 @@
+"""Containers as ROS 2 messages and back, as pure functions over bytes: no ROS needed.
+
+Recordings, the rclpy node (raw subscriptions, bytes published) and the DDS node share them.
+"""
+
+from tracker.messages.decode import DECODABLE, Event, decode, events_from_message
+from tracker.messages.encode import CameraInfo, Encodable, encode
+from tracker.messages.markers import encode_markers
+from tracker.messages.types import Encoded, definition, type_hash
+
+__all__ = [
+    "DECODABLE",
+    "CameraInfo",
+    "Encodable",
+    "Encoded",
+    "Event",
+    "decode",
+    "definition",
+    "encode",
+    "encode_markers",
+    "events_from_message",
+    "type_hash",
+]

@@ -1,0 +1,154 @@
+"""What does a ROS message say? From sensor messages to the tracker's containers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from tracker.camera import CameraModel
+from tracker.containers import CameraImage, Scan, Truth
+from tracker.errors import RecordingError
+from tracker.geometry import RigidTransform
+from tracker.messages import types
+from tracker.messages.images import bgr_from_compressed, bgr_from_image
+from tracker.transforms import StampedTransform
+
+#: What sensors, and simulations, say.
+Event: TypeAlias = CameraImage | Scan | StampedTransform | CameraModel | Truth
+
+
+def decode(type_name: str, cdr: bytes | memoryview, *, is_static: bool = False) -> list[Event]:
+    """Read one serialized message.
+
+    Args:
+        type_name: `package/msg/Name`; one of `DECODABLE`.
+        cdr: The serialized message with its encapsulation.
+        is_static: Transforms hold at every time (they came on /tf_static).
+
+    Returns:
+        One event; any number where the message carries transforms.
+
+    Raises:
+        RecordingError: The type is not decodable, or the bytes are no such message.
+        ShapeError: A scan makes no sense.
+        ClockError: A stamp is negative.
+        ConfigError: Camera intrinsics make no sense.
+    """
+    return events_from_message(type_name, types.deserialize(type_name, cdr), is_static=is_static)
+
+
+def events_from_message(type_name: str, message: Any, *, is_static: bool = False) -> list[Event]:
+    """Read one message object, of rclpy or anything with the same field names.
+
+    Args, returns and raises as `decode`.
+    """
+    if type_name in (types.TF_MESSAGE, types.TF_MESSAGE_ROS1):
+        return list(transforms_from_message(message, is_static=is_static))
+    convert = _SINGLE.get(type_name)
+    if convert is None:
+        raise RecordingError(
+            f"Messages of type {type_name!r} say nothing here; understood are "
+            f"{', '.join(sorted(DECODABLE))}."
+        )
+    return [convert(message)]
+
+
+def image_from_message(message: Any) -> CameraImage:
+    """The picture of a sensor_msgs/Image."""
+    return CameraImage(stamp_ns(message.header), message.header.frame_id, bgr_from_image(message))
+
+
+def image_from_compressed(message: Any) -> CameraImage:
+    """The picture of a sensor_msgs/CompressedImage."""
+    return CameraImage(
+        stamp_ns(message.header), message.header.frame_id, bgr_from_compressed(message)
+    )
+
+
+def scan_from_message(message: Any) -> Scan:
+    """The turn of a sensor_msgs/LaserScan."""
+    return Scan(
+        stamp_ns=stamp_ns(message.header),
+        frame_id=message.header.frame_id,
+        angle_min_rad=float(message.angle_min),
+        angle_increment_rad=float(message.angle_increment),
+        range_min_m=float(message.range_min),
+        range_max_m=float(message.range_max),
+        ranges_m=np.array(message.ranges, dtype=np.float64),
+    )
+
+
+def camera_from_message(message: Any) -> CameraModel:
+    """The intrinsics of a sensor_msgs/CameraInfo, for the pictures as they are sent.
+
+    K describes the full resolution; binning and a region of interest are applied to it.
+    """
+    k = message.K if hasattr(message, "K") else message.k  # ROS 1 writes it large
+    d = message.D if hasattr(message, "D") else message.d
+    across, down = max(int(message.binning_x), 1), max(int(message.binning_y), 1)
+    distortion = tuple(float(value) for value in d)
+    return CameraModel(
+        fx=float(k[0]) / across,
+        fy=float(k[4]) / down,
+        cx=(float(k[2]) - message.roi.x_offset) / across,
+        cy=(float(k[5]) - message.roi.y_offset) / down,
+        distortion=distortion,
+        distortion_model=message.distortion_model,
+    )
+
+
+def transforms_from_message(message: Any, *, is_static: bool = False) -> list[StampedTransform]:
+    """The transforms of a tf2_msgs/TFMessage."""
+    samples = []
+    for sample in message.transforms:
+        at, turn = sample.transform.translation, sample.transform.rotation
+        samples.append(
+            StampedTransform(
+                stamp_ns=stamp_ns(sample.header),
+                parent=sample.header.frame_id,
+                child=sample.child_frame_id,
+                transform=RigidTransform((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w)),
+                is_static=is_static,
+            )
+        )
+    return samples
+
+
+def truth_from_message(message: Any) -> Truth:
+    """Simulated people, from the vision_msgs/Detection3DArray that `encode` makes of them."""
+    people = message.detections
+    said = [{result.hypothesis.class_id for result in person.results} for person in people]
+    try:
+        ids = [int(person.id) for person in people]
+    except ValueError as error:
+        raise RecordingError(
+            f"Detections came whose ids are no numbers ({error}); they are no simulated people."
+        ) from error
+    return Truth(
+        stamp_ns=stamp_ns(message.header),
+        id=np.array(ids, dtype=np.int64),
+        xy_m=np.array(
+            [[person.bbox.center.position.x, person.bbox.center.position.y] for person in people]
+        ).reshape(-1, 2),
+        hand_up=np.array(["hand_raised" in words for words in said], dtype=bool),
+        in_view=np.array(["in_view" in words for words in said], dtype=bool),
+    )
+
+
+def stamp_ns(header: Any) -> int:
+    """The stamp of a std_msgs/Header, in nanoseconds."""
+    return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+
+
+_SINGLE: dict[str, Callable[[Any], Event]] = {
+    types.IMAGE: image_from_message,
+    types.COMPRESSED_IMAGE: image_from_compressed,
+    types.LASER_SCAN: scan_from_message,
+    types.CAMERA_INFO: camera_from_message,
+    types.DETECTIONS: truth_from_message,
+}
+
+#: Type names that `decode` understands.
+DECODABLE = frozenset(_SINGLE) | {types.TF_MESSAGE, types.TF_MESSAGE_ROS1}

@@ -1,0 +1,291 @@
+"""How is it said in ROS? From the tracker's containers to serialized messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import cv2
+import numpy as np
+
+from tracker.camera import CameraModel
+from tracker.containers import CameraImage, Pose, Scan, Tracks, Truth
+from tracker.errors import RecordingError
+from tracker.messages import types
+from tracker.messages.types import Encoded, build, serialize
+from tracker.transforms import StampedTransform
+
+#: A person as a box: width and depth, height.
+_BODY_WIDTH_M, _BODY_HEIGHT_M = 0.5, 1.7
+
+
+@dataclass(frozen=True, slots=True)
+class CameraInfo:
+    """A camera's intrinsics as /camera_info carries them.
+
+    Attributes:
+        stamp_ns: When they hold.
+        frame_id: The camera's frame.
+        width: Columns of the full picture.
+        height: Rows of the full picture.
+        camera: The intrinsics.
+    """
+
+    stamp_ns: int
+    frame_id: str
+    width: int
+    height: int
+    camera: CameraModel
+
+
+Encodable: TypeAlias = (
+    CameraImage
+    | Scan
+    | StampedTransform
+    | Iterable[StampedTransform]
+    | CameraInfo
+    | bool
+    | Pose
+    | Tracks
+    | Truth
+    | Encoded
+)
+
+
+def encode(item: Encodable, *, frame_id: str = "map", jpeg_quality: int | None = None) -> Encoded:
+    """Serialize one container as the ROS 2 message that says the same.
+
+    | container | message |
+    | --- | --- |
+    | CameraImage | sensor_msgs/Image (bgr8), or CompressedImage where `jpeg_quality` is given |
+    | Scan | sensor_msgs/LaserScan |
+    | StampedTransform, or several | tf2_msgs/TFMessage |
+    | CameraInfo | sensor_msgs/CameraInfo |
+    | bool | std_msgs/Bool |
+    | Pose | geometry_msgs/PoseStamped |
+    | Tracks | vision_msgs/Detection3DArray: id, `hand_raised` or `hand_lowered`, existence |
+    | Truth | vision_msgs/Detection3DArray: the same, and `in_view` where that holds |
+    | Encoded | itself |
+
+    Args:
+        item: The container.
+        frame_id: The fixed frame of `Tracks` and `Truth`, which do not name it themselves.
+        jpeg_quality: From 1 to 100, to compress images.
+
+    Raises:
+        RecordingError: There is no message for such an item, or a stamp does not fit into one.
+    """
+    if isinstance(item, Encoded):
+        return item
+    return serialize(_message(item, frame_id, jpeg_quality))
+
+
+def header(stamp_ns: int, frame_id: str) -> Any:
+    """A std_msgs/Header.
+
+    Raises:
+        RecordingError: The stamp does not fit into 32 bits of seconds.
+    """
+    sec, nanosec = divmod(int(stamp_ns), 1_000_000_000)
+    if not 0 <= sec < 2**31:
+        raise RecordingError(
+            f"A stamp of {stamp_ns} ns came; ROS messages hold 0 to {2**31 - 1} seconds."
+        )
+    time = build("builtin_interfaces/msg/Time", sec=sec, nanosec=nanosec)
+    return build("std_msgs/msg/Header", stamp=time, frame_id=frame_id)
+
+
+def point(x: float, y: float, z: float, kind: str = "Point") -> Any:
+    """A geometry_msgs/Point, or Vector3 by `kind`."""
+    return build(f"geometry_msgs/msg/{kind}", x=float(x), y=float(y), z=float(z))
+
+
+def ros_pose(
+    position_m: tuple[float, float, float],
+    quaternion_xyzw: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0),
+) -> Any:
+    """A geometry_msgs/Pose."""
+    return build(
+        "geometry_msgs/msg/Pose", position=point(*position_m), orientation=_turn(quaternion_xyzw)
+    )
+
+
+def _message(item: Encodable, frame_id: str, jpeg_quality: int | None) -> Any:
+    match item:
+        case bool() | np.bool_():
+            return build(types.BOOL, data=bool(item))
+        case CameraImage():
+            return _image(item) if jpeg_quality is None else _compressed(item, jpeg_quality)
+        case Scan():
+            return _scan(item)
+        case StampedTransform():
+            return _transforms([item])
+        case CameraInfo():
+            return _camera_info(item)
+        case Pose():
+            return build(
+                types.POSE_STAMPED,
+                header=header(item.stamp_ns, item.frame_id),
+                pose=ros_pose(item.position_m, item.quaternion_xyzw),
+            )
+        case Tracks():
+            return _tracks(item, frame_id)
+        case Truth():
+            return _truth(item, frame_id)
+        case list() | tuple() if all(isinstance(part, StampedTransform) for part in item):
+            return _transforms(item)
+    raise RecordingError(
+        f"There is no ROS message for {type(item).__name__}; `encode` lists what there is."
+    )
+
+
+def _image(image: CameraImage) -> Any:
+    return build(
+        types.IMAGE,
+        header=header(image.stamp_ns, image.frame_id),
+        height=image.height,
+        width=image.width,
+        encoding="bgr8",
+        step=3 * image.width,
+        data=np.ascontiguousarray(image.bgr).reshape(-1),
+    )
+
+
+def _compressed(image: CameraImage, quality: int) -> Any:
+    if not 1 <= quality <= 100:
+        raise RecordingError(f"A JPEG quality of {quality} came; needed is one from 1 to 100.")
+    _, data = cv2.imencode(".jpg", image.bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    return build(
+        types.COMPRESSED_IMAGE,
+        header=header(image.stamp_ns, image.frame_id),
+        format="bgr8; jpeg compressed bgr8",  # the words of image_transport
+        data=data.reshape(-1),
+    )
+
+
+def _scan(scan: Scan) -> Any:
+    beams = max(len(scan.ranges_m) - 1, 0)
+    return build(
+        types.LASER_SCAN,
+        header=header(scan.stamp_ns, scan.frame_id),
+        angle_min=scan.angle_min_rad,
+        angle_max=scan.angle_min_rad + beams * scan.angle_increment_rad,
+        angle_increment=scan.angle_increment_rad,
+        range_min=scan.range_min_m,
+        range_max=scan.range_max_m,
+        ranges=scan.ranges_m.astype(np.float32),
+    )
+
+
+def _transforms(samples: Iterable[StampedTransform]) -> Any:
+    return build(
+        types.TF_MESSAGE,
+        transforms=[
+            build(
+                "geometry_msgs/msg/TransformStamped",
+                header=header(sample.stamp_ns, sample.parent),
+                child_frame_id=sample.child,
+                transform=build(
+                    "geometry_msgs/msg/Transform",
+                    translation=point(*sample.transform.translation_m, "Vector3"),
+                    rotation=_turn(sample.transform.quaternion_xyzw),
+                ),
+            )
+            for sample in samples
+        ],
+    )
+
+
+def _camera_info(info: CameraInfo) -> Any:
+    camera = info.camera
+    fx, fy, cx, cy = camera.fx, camera.fy, camera.cx, camera.cy
+    return build(
+        types.CAMERA_INFO,
+        header=header(info.stamp_ns, info.frame_id),
+        height=info.height,
+        width=info.width,
+        # RViz and image_proc know no empty name for "no distortion".
+        distortion_model=camera.distortion_model or "plumb_bob",
+        d=np.array(camera.distortion or (0.0,) * 5),
+        k=np.array([fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]),
+        r=np.eye(3).reshape(-1),
+        p=np.array([fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0]),
+    )
+
+
+def _tracks(tracks: Tracks, frame_id: str) -> Any:
+    people = [
+        _person(
+            track_id=int(tracks.id[row]),
+            xy=(float(tracks.mean[row, 0]), float(tracks.mean[row, 1])),
+            covariance=tracks.covariance[row, :2, :2],
+            words=["hand_raised" if tracks.raised[row] else "hand_lowered"],
+            score=float(tracks.existence[row]),
+            stamp=header(tracks.stamp_ns, frame_id),
+        )
+        for row in range(len(tracks))
+    ]
+    return build(types.DETECTIONS, header=header(tracks.stamp_ns, frame_id), detections=people)
+
+
+def _truth(truth: Truth, frame_id: str) -> Any:
+    people = []
+    for row in range(len(truth)):
+        words = ["hand_raised" if truth.hand_up[row] else "hand_lowered"]
+        people.append(
+            _person(
+                track_id=int(truth.id[row]),
+                xy=(float(truth.xy_m[row, 0]), float(truth.xy_m[row, 1])),
+                covariance=np.zeros((2, 2)),
+                words=[*words, "in_view"] if truth.in_view[row] else words,
+                score=1.0,
+                stamp=header(truth.stamp_ns, frame_id),
+            )
+        )
+    return build(types.DETECTIONS, header=header(truth.stamp_ns, frame_id), detections=people)
+
+
+def _person(
+    *,
+    track_id: int,
+    xy: tuple[float, float],
+    covariance: Any,
+    words: list[str],
+    score: float,
+    stamp: Any,
+) -> Any:
+    """One vision_msgs/Detection3D; the pose stands on the floor, the box around the body.
+
+    Of the 6x6 covariance only x and y are estimated; the rest is zero.
+    """
+    spread = np.zeros((6, 6))
+    spread[:2, :2] = covariance
+    on_floor = build(
+        "geometry_msgs/msg/PoseWithCovariance",
+        pose=ros_pose((*xy, 0.0)),
+        covariance=spread.reshape(-1),
+    )
+    return build(
+        "vision_msgs/msg/Detection3D",
+        header=stamp,
+        results=[
+            build(
+                "vision_msgs/msg/ObjectHypothesisWithPose",
+                hypothesis=build("vision_msgs/msg/ObjectHypothesis", class_id=word, score=score),
+                pose=on_floor,
+            )
+            for word in words
+        ],
+        bbox=build(
+            "vision_msgs/msg/BoundingBox3D",
+            center=ros_pose((*xy, _BODY_HEIGHT_M / 2)),
+            size=point(_BODY_WIDTH_M, _BODY_WIDTH_M, _BODY_HEIGHT_M, "Vector3"),
+        ),
+        id=str(track_id),
+    )
+
+
+def _turn(quaternion_xyzw: tuple[float, float, float, float]) -> Any:
+    x, y, z, w = (float(value) for value in quaternion_xyzw)
+    return build("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)
