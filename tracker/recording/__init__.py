@@ -1,0 +1,7 @@
+"""Recordings of robots, videos and photos as one stream of sensor data; outputs as recordings."""
+
+from tracker.recording.opening import open_recording
+from tracker.recording.recording import Recording, Skipped, Summary, Topics
+from tracker.recording.writer import RecordingWriter
+
+__all__ = ["Recording", "RecordingWriter", "Skipped", "Summary", "Topics", "open_recording"]

@@ -1,0 +1,75 @@
+"""Which kind of recording is this? By its suffix, and by what a folder holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tracker.errors import RecordingError
+from tracker.recording.bags import bag_files, open_bag
+from tracker.recording.pictures import (
+    PHOTO_SUFFIXES,
+    VIDEO_SUFFIXES,
+    PhotoSource,
+    VideoSource,
+    photos_in,
+)
+from tracker.recording.recording import Recording, Topics
+from tracker.recording.sources import Source
+
+_BAG_SUFFIXES = frozenset({".mcap", ".db3", ".bag"})
+
+
+def open_recording(
+    path: str | Path,
+    topics: Topics | None = None,
+    *,
+    with_truth: bool = False,
+    stamps: str = "header",
+    photo_period_s: float = 0.1,
+) -> Recording:
+    """Open a recording for reading; use it in a `with` block.
+
+    Args:
+        path: A rosbag2 folder, a .mcap, .db3 or ROS 1 .bag file, a video, a photo or a folder of
+            photos.
+        topics: Where it holds what; by default the specification's names.
+        with_truth: Also deliver simulated people.
+        stamps: Which time the data carry: `header`, the messages' own, or `log`, that of the
+            recording.
+        photo_period_s: From one photo to the next.
+
+    Raises:
+        RecordingError: There is no such file, or it is no recording, or cannot be read at all; or
+            `stamps` is neither.
+    """
+    path, topics = Path(path), topics or Topics()
+    source = _open_source(path, topics.image, photo_period_s)
+    try:
+        return Recording(path, source, topics, with_truth=with_truth, stamps=stamps)
+    except RecordingError:
+        source.close()
+        raise
+
+
+def _open_source(path: Path, image_topic: str, photo_period_s: float) -> Source:
+    if not path.exists():
+        raise RecordingError(f"{path}: there is no such file or folder; check the name.")
+    suffix = path.suffix.lower()
+    if path.is_dir():
+        if (path / "metadata.yaml").exists() or bag_files(path):
+            return open_bag(path)
+        photos = photos_in(path)
+        if not photos:
+            raise RecordingError(
+                f"{path}: holds neither a rosbag2 recording nor photos; needed is a folder with "
+                f"metadata.yaml, or with {', '.join(sorted(PHOTO_SUFFIXES))} files."
+            )
+        return PhotoSource(photos, image_topic, photo_period_s)
+    if suffix in _BAG_SUFFIXES:
+        return open_bag(path)
+    if suffix in VIDEO_SUFFIXES:
+        return VideoSource(path, image_topic)
+    if suffix in PHOTO_SUFFIXES:
+        return PhotoSource([path], image_topic, photo_period_s)
+    known = sorted(_BAG_SUFFIXES | VIDEO_SUFFIXES | PHOTO_SUFFIXES)
+    raise RecordingError(f"{path}: is of no known kind; known are {', '.join(known)} and folders.")

@@ -1,0 +1,301 @@
+"""What did the robot see? One stream of sensor data from any recording, video or photos."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from statistics import median
+from types import TracebackType
+
+from tracker.camera import CameraModel
+from tracker.containers import CameraImage, Scan
+from tracker.errors import RecordingError, TrackerError
+from tracker.messages import DECODABLE, Event, types
+from tracker.recording.sources import RawMessage, Source, TopicInfo, seconds_into
+
+#: Messages whose stamps are compared with the log's time, and the offset that is worth a word.
+_STAMPS_COMPARED, _WORTH_A_WORD_S = 10, 1.0
+
+_IMAGES = (types.IMAGE, types.COMPRESSED_IMAGE)
+_PICTURES = ("video frames", "photos")
+
+
+@dataclass(frozen=True, slots=True)
+class Topics:
+    """Where a recording holds what.
+
+    Attributes:
+        image: Pictures; `<image>/compressed` is taken where the topic itself is missing.
+        scan: LiDAR scans; where it is missing and there is one other topic of scans, that one.
+        camera_info: Intrinsics; where it is missing, the `camera_info` beside the image topic.
+        tf: Moving transforms.
+        tf_static: Lasting transforms.
+        truth: Simulated people.
+    """
+
+    image: str = "/image_raw"
+    scan: str = "/scan"
+    camera_info: str = "/camera_info"
+    tf: str = "/tf"
+    tf_static: str = "/tf_static"
+    truth: str = "/truth/people"
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """What a recording says of itself.
+
+    Attributes:
+        kind: "ROS 2 recording", "ROS 1 bag", "video" or "photos".
+        start_ns: Log time of the first message.
+        duration_s: From the first message to the last.
+        topics: Type and number of messages of every topic, used or not.
+    """
+
+    kind: str
+    start_ns: int
+    duration_s: float
+    topics: dict[str, TopicInfo]
+
+
+@dataclass(slots=True)
+class Skipped:
+    """Messages of one topic that could not be used.
+
+    Attributes:
+        count: How many.
+        first: When the first of them came, and what was wrong with it.
+    """
+
+    count: int
+    first: str
+
+
+class Recording:
+    """Sensor data in log-time order; a context manager. Made by `open_recording`.
+
+    Attributes:
+        path: Where it lies.
+        summary: What it holds.
+        topics: Type and number of messages of every topic it holds, used or not.
+        read_topics: The topics that are really read.
+        notes: What a user should know about it, as sentences.
+        skipped: Messages that could not be used, by topic; filled while `events` runs.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        source: Source,
+        topics: Topics,
+        *,
+        with_truth: bool,
+        stamps: str,
+    ) -> None:
+        if stamps not in ("header", "log"):
+            raise RecordingError(f"stamps={stamps!r} came; needed is header or log.")
+        self.path = path
+        self.skipped: dict[str, Skipped] = {}
+        self._source = source
+        self._stamps = stamps
+        self._with_truth = with_truth
+        duration_s = (source.end_ns - source.start_ns) / 1e9
+        self.summary = Summary(source.kind, source.start_ns, duration_s, dict(source.topics))
+        self._asked = topics
+        self.notes = list(source.notes)
+        self.topics = self.summary.topics
+        self.read_topics = self._find_topics(topics)
+        self._note_stamps()
+
+    def __enter__(self) -> Recording:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the files."""
+        self._source.close()
+
+    @property
+    def has_images(self) -> bool:
+        """Pictures are on the image topic."""
+        return self._holds(self.read_topics.image, *_IMAGES, *_PICTURES)
+
+    @property
+    def has_scans(self) -> bool:
+        """Scans are on the scan topic."""
+        return self._holds(self.read_topics.scan, types.LASER_SCAN)
+
+    @property
+    def has_camera_info(self) -> bool:
+        """Intrinsics are on the camera_info topic."""
+        return self._holds(self.read_topics.camera_info, types.CAMERA_INFO)
+
+    @property
+    def has_transforms(self) -> bool:
+        """Transforms are on one of their topics."""
+        kinds = (types.TF_MESSAGE, types.TF_MESSAGE_ROS1)
+        return self._holds(self.read_topics.tf, *kinds) or self._holds(
+            self.read_topics.tf_static, *kinds
+        )
+
+    @property
+    def has_truth(self) -> bool:
+        """Simulated people are on the truth topic."""
+        return self._holds(self.read_topics.truth, types.DETECTIONS)
+
+    @property
+    def is_bag(self) -> bool:
+        """It comes from a robot: not a video, nor photos."""
+        return self.summary.kind not in ("video", "photos")
+
+    def share(self, log_ns: int) -> float:
+        """How far into the recording a log time is, from 0 to 1."""
+        length_ns = self._source.end_ns - self._source.start_ns
+        since_ns = log_ns - self._source.start_ns
+        return min(max(since_ns / length_ns, 0.0), 1.0) if length_ns else 1.0
+
+    def skipped_lines(self) -> list[str]:
+        """One sentence for each topic of which something could not be used."""
+        return [
+            f"{topic}: {skipped.count} not usable, the first {skipped.first}"
+            for topic, skipped in sorted(self.skipped.items())
+        ]
+
+    def require_images(self) -> None:
+        """Insist on pictures.
+
+        Raises:
+            RecordingError: There are none on the image topic; the message says where there are.
+        """
+        if self.has_images:
+            return
+        holding = [topic for topic in self.topics if self._holds(topic, *_IMAGES)]
+        what = ", ".join(
+            f"{topic} ({info.type_name}, {info.count})"
+            for topic, info in sorted(self.topics.items())
+        )
+        remedy = (
+            f"Pass --image-topic {holding[0]}"
+            if len(holding) == 1
+            else f"Pass --image-topic with one of {', '.join(holding)}"
+            if holding
+            else "A recording with images is needed"
+        )
+        raise RecordingError(
+            f"{self.path}: no images on {self._asked.image}; the recording holds "
+            f"{what or 'nothing'}. {remedy}."
+        )
+
+    def events(self) -> Iterator[tuple[int, Event]]:
+        """Everything the sensors said, from the beginning, with constant memory.
+
+        Lasting transforms come first, wherever they lie in the recording. A message that cannot be
+        used is counted in `skipped`.
+
+        Yields:
+            Log time in nanoseconds, and what was said. Stamps are the messages' own, or the log
+            time where `stamps="log"`.
+
+        Raises:
+            RecordingError: The file is damaged; what comes before the damage has been yielded.
+        """
+        self.skipped.clear()
+        for event in self._lasting():
+            yield self._source.start_ns, event
+        moving = self._used() - {self.read_topics.tf_static}
+        for message in self._source.messages(moving):
+            for event in self._read(message):
+                yield message.log_ns, event
+
+    def _lasting(self) -> list[Event]:
+        found: list[Event] = []
+        if self._holds(self.read_topics.tf_static, types.TF_MESSAGE, types.TF_MESSAGE_ROS1):
+            try:
+                for message in self._source.messages({self.read_topics.tf_static}):
+                    found += self._read(message, is_static=True)
+            except RecordingError:  # the same damage ends `events` later on, and is told then
+                pass
+        return found
+
+    def _read(self, message: RawMessage, *, is_static: bool = False) -> list[Event]:
+        try:
+            events = self._source.read(message, is_static=is_static)
+        except TrackerError as error:
+            self._skip(message, str(error))
+            return []
+        if self._stamps == "log":
+            return [_restamped(event, message.log_ns) for event in events]
+        return events
+
+    def _skip(self, message: RawMessage, why: str) -> None:
+        if message.topic in self.skipped:
+            self.skipped[message.topic].count += 1
+        else:
+            when = seconds_into(message.log_ns, self._source.start_ns)
+            self.skipped[message.topic] = Skipped(1, f"at {when}: {why}")
+
+    def _used(self) -> set[str]:
+        names = self.read_topics
+        used = {names.image, names.scan, names.camera_info, names.tf, names.tf_static}
+        used |= {names.truth} if self._with_truth else set()
+        return {name for name in used if self._holds(name, *DECODABLE, *_PICTURES)}
+
+    def _holds(self, topic: str, *type_names: str) -> bool:
+        info = self.topics.get(topic)
+        return info is not None and info.type_name in type_names
+
+    def _find_topics(self, asked: Topics) -> Topics:
+        """Where the asked-for topics are missing, the places where these data usually are."""
+        found = asked
+        compressed = f"{asked.image}/compressed"
+        if asked.image not in self.topics and self._holds(compressed, *_IMAGES):
+            found = replace(found, image=compressed)
+        scans = [name for name in self.topics if self._holds(name, types.LASER_SCAN)]
+        if asked.scan not in self.topics and len(scans) == 1:
+            found = replace(found, scan=scans[0])
+        namespace = asked.image.rsplit("/", 1)[0]
+        beside = f"{namespace}/camera_info"
+        if asked.camera_info not in self.topics and self._holds(beside, types.CAMERA_INFO):
+            found = replace(found, camera_info=beside)
+        for name in ("image", "scan", "camera_info"):
+            before, after = getattr(asked, name), getattr(found, name)
+            if before != after:
+                self.notes.append(f"{self.path}: nothing on {before}; {after} is read instead.")
+        return found
+
+    def _note_stamps(self) -> None:
+        """Say when the messages' stamps and the time of recording are worlds apart."""
+        offsets_s: list[float] = []
+        if not self.is_bag:
+            return
+        try:
+            for message in self._source.messages(
+                self._used() & {self.read_topics.image, self.read_topics.scan}
+            ):
+                with suppress(TrackerError):  # counted by `events`
+                    for event in self._source.read(message, is_static=False):
+                        if isinstance(event, CameraImage | Scan):
+                            offsets_s.append((event.stamp_ns - message.log_ns) / 1e9)
+                if len(offsets_s) >= _STAMPS_COMPARED:
+                    break
+        except RecordingError:  # told by `events`
+            pass
+        if offsets_s and abs(median(offsets_s)) > _WORTH_A_WORD_S:
+            taken, other = ("header", "log") if self._stamps == "header" else ("log", "header")
+            self.notes.append(
+                f"{self.path}: the header stamps are {median(offsets_s):+.3f} s from the time of "
+                f"recording; {taken} stamps are used, and could be {other} stamps."
+            )
+
+
+def _restamped(event: Event, stamp_ns: int) -> Event:
+    return event if isinstance(event, CameraModel) else replace(event, stamp_ns=stamp_ns)
