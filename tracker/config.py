@@ -33,7 +33,13 @@ def _parameter(
 class Config(BaseModel):
     """Every parameter of the tracker; see `Config.from_yaml` for files."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        strict=True,
+        allow_inf_nan=False,
+        protected_namespaces=(),  # `model_complexity` is the specification's word
+    )
 
     # The specification's table 1.
     processing_rate: float = _parameter(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,7 @@ FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 ImageArray: TypeAlias = NDArray[np.uint8]
+_Batch = TypeVar("_Batch", "Hands", "Measurements", "Tracks")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,7 +112,8 @@ class Scan:
     @property
     def angles_rad(self) -> FloatArray:
         """Shape (B,): direction of each beam in the laser's frame, not normalized."""
-        return self.angle_min_rad + self.angle_increment_rad * np.arange(len(self.ranges_m))
+        beams = np.arange(len(self.ranges_m), dtype=np.float64)
+        return self.angle_min_rad + self.angle_increment_rad * beams
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,7 +122,8 @@ class Hands:
 
     Attributes:
         landmarks_px: Shape (H, 21, 2): x to the right, y down, in pixels of the full image, in
-            MediaPipe's order (0 wrist, 4 thumb tip, 9 middle finger's root, 12 its tip, 20 pinky tip).
+            MediaPipe's order (0 wrist, 4 thumb tip, 9 middle finger's root, 12 its tip, 20 pinky
+            tip).
         score: Shape (H,): the landmark model's word that this is a hand, in [0, 1].
         right: Shape (H,): probability of a right hand, in [0, 1].
         raised: Shape (H,), bool: the raise rule's verdict on this one image.
@@ -161,7 +164,8 @@ class Hands:
     @property
     def length_px(self) -> FloatArray:
         """Shape (H,): from the wrist to the middle finger's tip."""
-        return np.linalg.norm(self.landmarks_px[:, 12] - self.landmarks_px[:, 0], axis=-1)
+        along = self.landmarks_px[:, 12] - self.landmarks_px[:, 0]
+        return np.hypot(along[:, 0], along[:, 1])
 
 
 class MeasurementModel(IntEnum):
@@ -177,7 +181,8 @@ class Measurements:
 
     Attributes:
         values: Shape (M, 2). Polar: bearing_rad (counter-clockwise in the sensor's frame) and
-            range_m, where a NaN range means "bearing only". Cartesian: x_m, y_m in the fixed frame.
+            range_m, where a NaN range means "bearing only". Cartesian: x_m, y_m in the fixed
+            frame.
         covariance: Shape (M, 2, 2), in the units of `values`.
         model: Shape (M,), `MeasurementModel`.
         sensor_pose: Shape (M, 3): x_m, y_m, yaw_rad of the sensor in the fixed frame.
@@ -355,15 +360,26 @@ class Tracks:
     @staticmethod
     def none(stamp_ns: int) -> Tracks:
         """Nobody at all."""
-        empty = np.zeros(0)
+        numbers, flags, counts = np.zeros(0), np.zeros(0, np.bool_), np.zeros(0, np.int64)
         return Tracks(
-            stamp_ns, empty, np.zeros((0, 4)), np.zeros((0, 4, 4)),
-            empty, empty, empty, empty, empty, empty, empty,
-        )  # fmt: skip
+            stamp_ns=stamp_ns,
+            id=counts,
+            mean=np.zeros((0, 4)),
+            covariance=np.zeros((0, 4, 4)),
+            existence=numbers,
+            confirmed=flags,
+            raised=flags,
+            raised_since_ns=counts,
+            age_s=numbers,
+            unseen_s=numbers,
+            hand=counts,
+        )
 
     def row_of(self, track_id: int | None) -> int | None:
         """Row of a person, or None where the tracker does not know them (any more)."""
-        found = np.flatnonzero(self.id == track_id) if track_id is not None else ()
+        if track_id is None:
+            return None
+        found = np.flatnonzero(self.id == track_id)
         return int(found[0]) if len(found) else None
 
 
@@ -384,6 +400,14 @@ class Pose:
     position_m: tuple[float, float, float]
     quaternion_xyzw: tuple[float, float, float, float]
     covariance_m2: FloatArray = field(default_factory=lambda: np.zeros((2, 2)))
+
+    def __post_init__(self) -> None:
+        check_stamp(self.stamp_ns)
+        _freeze(self, "covariance_m2", self.covariance_m2, np.float64)
+        if self.covariance_m2.shape != (2, 2):
+            raise ShapeError(
+                f"A pose's covariance has shape {self.covariance_m2.shape}; needed is (2, 2)."
+            )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -431,7 +455,8 @@ class FrameResult:
         sensor_pose: x_m, y_m, yaw_rad of the camera in the fixed frame; None without a transform.
         scan: The scan that was used, if any.
         scan_pose: x_m, y_m, yaw_rad of that scan's laser in the fixed frame, if known.
-        notes: What was missing or odd about this image, as short sentences ("no scan within 0.2 s").
+        notes: What was missing or odd about this image, as short sentences ("no scan within
+            0.2 s").
     """
 
     stamp_ns: int
@@ -460,8 +485,7 @@ def check_stamp(stamp_ns: int) -> None:
 
 
 def _freeze(batch: object, name: str, value: ArrayLike, dtype: type) -> None:
-    array = np.asarray(value, dtype=dtype)
-    view = array.view()
+    view: NDArray[Any] = np.asarray(value, dtype=dtype).view()
     view.flags.writeable = False
     object.__setattr__(batch, name, view)
 
@@ -477,7 +501,9 @@ def _check_rows(batch: Any, count: int, **tails: tuple[int, ...]) -> None:
         raise ShapeError(f"{type(batch).__name__} disagree in shape: {shapes}.")
 
 
-def _select(batch: Any, rows: Any) -> Any:
+def _select(batch: _Batch, rows: Any) -> _Batch:
+    if isinstance(rows, (int, np.integer)):
+        rows = [rows]  # one row is a batch of one
     chosen = {
         item.name: getattr(batch, item.name)[rows]
         for item in fields(batch)

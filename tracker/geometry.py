@@ -109,11 +109,12 @@ class RigidTransform:
 
     def apply(self, points: ArrayLike) -> FloatArray:
         """Points of the source frame, shape (..., 3), in the target frame."""
-        return np.asarray(points, np.float64) @ self.matrix.T + self.translation_m
+        return self.rotate(points) + self.translation_m
 
     def rotate(self, vectors: ArrayLike) -> FloatArray:
         """Directions of the source frame, shape (..., 3), in the target frame."""
-        return np.asarray(vectors, np.float64) @ self.matrix.T
+        turned: FloatArray = np.asarray(vectors, np.float64) @ self.matrix.T
+        return turned
 
     @property
     def matrix(self) -> FloatArray:

@@ -20,7 +20,7 @@ from tracker.perception.detector import HandDetector
 from tracker.ranging import body_pose, measure_people
 from tracker.rate_limiter import RateLimiter
 from tracker.tracking import PersonTracker, approach_pose, customer_pose
-from tracker.transforms import StampedTransform, TransformBuffer
+from tracker.transforms import StampedTransform, TransformBuffer, Transforms
 
 #: Scans remembered, and images that may wait at a time; older ones give way.
 _SCANS_KEPT = 40
@@ -36,9 +36,16 @@ class Pipeline:
     Args:
         config: Every parameter.
         detector: Finds hands; by default MediaPipe's models on ONNX Runtime.
+        transforms: Knows where frames were; by default a buffer of the project's own. A node may
+            pass one around tf2's.
     """
 
-    def __init__(self, config: Config | None = None, detector: HandDetector | None = None) -> None:
+    def __init__(
+        self,
+        config: Config | None = None,
+        detector: HandDetector | None = None,
+        transforms: Transforms | None = None,
+    ) -> None:
         self.config = config or Config()
         if detector is None:
             from tracker.perception import HandFinder
@@ -46,7 +53,7 @@ class Pipeline:
             detector = HandFinder(self.config)
         self.detector = detector
         self.tracker = PersonTracker(self.config)
-        self.transforms = TransformBuffer()
+        self.transforms: Transforms = transforms or TransformBuffer()
         self.camera = _configured_camera(self.config)
         self._limiter = RateLimiter(self.config.processing_rate)
         self._scans: deque[Scan] = deque(maxlen=_SCANS_KEPT)
@@ -61,6 +68,7 @@ class Pipeline:
 
         Raises:
             TransformError: It is unusable; see `TransformBuffer.add`.
+            ClockError: Its stamp is negative.
         """
         self.transforms.add(sample)
 

@@ -6,8 +6,9 @@ interpolates like tf2 (translations linearly, rotations by slerp) and never extr
 
 from __future__ import annotations
 
-from bisect import bisect_left, insort
+from bisect import bisect_left, bisect_right, insort
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -33,6 +34,30 @@ class StampedTransform:
     child: str
     transform: RigidTransform
     is_static: bool = False
+
+
+class Transforms(Protocol):
+    """What the pipeline needs of a transform buffer; `TransformBuffer` comes along."""
+
+    def add(self, sample: StampedTransform) -> None:
+        """Take in one transform."""
+        ...
+
+    def lookup(self, target: str, source: str, stamp_ns: int) -> RigidTransform:
+        """`target_from_source` at a stamp, or a TransformError."""
+        ...
+
+    def can_lookup(self, target: str, source: str, stamp_ns: int) -> bool:
+        """Whether `lookup` would answer."""
+        ...
+
+    def forget_after(self, stamp_ns: int) -> None:
+        """Drop what is later than a stamp."""
+        ...
+
+    def clear(self) -> None:
+        """Forget the moving transforms."""
+        ...
 
 
 class TransformBuffer:
@@ -71,6 +96,8 @@ class TransformBuffer:
             )
         x, y, z, w = (value / norm for value in sample.transform.quaternion_xyzw)
         transform = RigidTransform(sample.transform.translation_m, (x, y, z, w))
+        if self._parent.get(child, parent) != parent:
+            self._moving.pop(child, None)  # those were relative to another frame
         self._parent[child] = parent
         if sample.is_static:
             self._static[child] = transform
@@ -78,6 +105,8 @@ class TransformBuffer:
             return
         self._static.pop(child, None)
         samples = self._moving.setdefault(child, [])
+        if samples and sample.stamp_ns < samples[-1][0] - self._memory_ns:
+            samples.clear()  # the clock has jumped back, as when a recording loops
         row = bisect_left(samples, sample.stamp_ns, key=_stamp)
         if row < len(samples) and samples[row][0] == sample.stamp_ns:
             samples[row] = (sample.stamp_ns, transform)
@@ -90,8 +119,8 @@ class TransformBuffer:
         """`target_from_source` at a stamp.
 
         Raises:
-            TransformError: A frame is unknown, the two are not connected, or the stamp lies outside
-                what a link remembers; the message names the link.
+            TransformError: A frame is unknown, the two are not connected, or the stamp lies
+                outside what a link remembers; the message names the link.
         """
         target, source = target.lstrip("/"), source.lstrip("/")
         if target == source:
@@ -116,6 +145,11 @@ class TransformBuffer:
     def frames(self) -> set[str]:
         """Every frame heard of."""
         return set(self._parent) | set(self._parent.values())
+
+    def forget_after(self, stamp_ns: int) -> None:
+        """Drop what is later than a stamp: left over from before the clock jumped back."""
+        for samples in self._moving.values():
+            del samples[bisect_right(samples, stamp_ns, key=_stamp) :]
 
     def clear(self, *, keep_static: bool = True) -> None:
         """Forget the moving transforms (after a jump of the clock), or all of them."""
@@ -142,6 +176,11 @@ class TransformBuffer:
         if child in self._static:
             return self._static[child]
         samples = self._moving[child]
+        if not samples:
+            raise TransformError(
+                f"Transform from {child!r} to {self._parent[child]!r} has not come since the "
+                "clock jumped back."
+            )
         row = bisect_left(samples, stamp_ns, key=_stamp)
         if row < len(samples) and samples[row][0] == stamp_ns:
             return samples[row][1]

@@ -10,7 +10,7 @@ from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measureme
 from tracker.geometry import RigidTransform, normalize_angle
 from tracker.ranging.hand_pairs import pair_hands
 from tracker.ranging.people import PersonClusters, find_people
-from tracker.ranging.person_range import nearest_person
+from tracker.ranging.person_range import owners
 from tracker.ranging.ray_range import range_along_rays
 from tracker.ranging.rays import HandRays, hand_rays
 
@@ -63,7 +63,7 @@ def measure_people(
                 rays, scan, laser_pose, config.scan_window_beams, config.segment_jump_m
             )
     else:
-        claimed = nearest_person(rays, people, config.body_width_m)
+        claimed = owners(rays, hands, camera, people, config.body_width_m)
         range_m = np.full(len(hands), np.nan)
 
     from_hands = _hand_measurements(rays, range_m, hands, pair, config)

@@ -1,37 +1,75 @@
-"""Which body does a raised hand belong to? The nearest person-sized cluster beside its ray.
+"""Which body does a raised hand belong to? The person-sized cluster that fits it, beside its ray.
 
 A raised hand stands beside the body, and a laser at leg height looks past the body at the wall:
-the beam at the hand's own bearing is the wrong one to ask.
+the beam at the hand's own bearing is the wrong one to ask. Of several people beside the ray the
+picture tells which: the thumb of a raised hand points at its owner's head, and the hand is as
+large as it is near.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from tracker.containers import FloatArray, IntArray
+from tracker.camera import CameraModel
+from tracker.containers import FloatArray, Hands, IntArray
 from tracker.ranging.people import PersonClusters
 from tracker.ranging.rays import HandRays
 
+#: Adults' hands: from the wrist to the middle finger's root. Guess from anthropometric tables.
+_PALM_LENGTH_M = 0.095
+#: How far a raised hand stands beside the body's middle, and how much that varies (guesses).
+_BESIDE_M, _BESIDE_STD_M = 0.3, 0.2
+#: Relative spread of a range told from a palm's size: people differ, palms tilt (guess).
+_RANGE_SPREAD = 0.3
+_WRIST, _THUMB_TIP, _MIDDLE_ROOT, _PINKY_ROOT = 0, 4, 9, 17
 
-def nearest_person(rays: HandRays, people: PersonClusters, body_width_m: float) -> IntArray:
-    """For each hand the nearest cluster within half a body's width of its ray.
+
+def owners(
+    rays: HandRays, hands: Hands, camera: CameraModel, people: PersonClusters, body_width_m: float
+) -> IntArray:
+    """For each hand the cluster within half a body's width of its ray that fits it best.
 
     Args:
         rays: Hands' directions.
-        people: Clusters in the same fixed frame.
+        hands: The same hands in the picture.
+        camera: Intrinsics of the full image.
+        people: Clusters in the fixed frame of the rays.
         body_width_m: Half of it, to each side of the ray, is searched.
 
     Returns:
         Shape (H,): rows of `people`; -1 where nobody stands there.
     """
-    if len(people) == 0:
-        return np.full(len(rays.bearing_rad), -1, dtype=np.int64)
+    if len(people) == 0 or len(hands) == 0:
+        return np.full(len(hands), -1, dtype=np.int64)
     heading = rays.bearing_rad + rays.origin[2]
     along, across = ray_coordinates(people.xy_m, rays.origin[:2], heading)
     beside = (along > 0.0) & (np.abs(across) <= body_width_m / 2)
-    distance = np.where(beside, along, np.inf)
-    nearest = np.argmin(distance, axis=1)
-    return np.where(beside.any(axis=1), nearest, -1)
+    offset, range_m = _owner_offset(hands), _range_from_size(hands, camera)
+    misfit = ((across - offset[:, None]) / _BESIDE_STD_M) ** 2
+    misfit += (np.log(np.maximum(along, 0.05) / range_m[:, None]) / _RANGE_SPREAD) ** 2
+    best = np.argmin(np.where(beside, misfit, np.inf), axis=1)
+    return np.where(beside.any(axis=1), best, -1)
+
+
+def _owner_offset(hands: Hands) -> FloatArray:
+    """How far to the left of the hand its owner should stand, shape (H,), meters.
+
+    Whether it is a left or a right hand, seen from the front or from behind: held up beside the
+    head, its thumb is on the head's side. A hand seen edge-on tells nothing.
+    """
+    palm = np.maximum(_palm_px(hands), 1.0)
+    toward = hands.landmarks_px[:, _THUMB_TIP, 0] - hands.landmarks_px[:, _PINKY_ROOT, 0]
+    return np.asarray(-_BESIDE_M * np.clip(toward / palm, -1.0, 1.0))
+
+
+def _range_from_size(hands: Hands, camera: CameraModel) -> FloatArray:
+    """Range at which an adult's palm would look that long, shape (H,), meters."""
+    return np.asarray(camera.fy * _PALM_LENGTH_M / np.maximum(_palm_px(hands), 1.0))
+
+
+def _palm_px(hands: Hands) -> FloatArray:
+    palm = hands.landmarks_px[:, _MIDDLE_ROOT] - hands.landmarks_px[:, _WRIST]
+    return np.asarray(np.linalg.norm(palm, axis=-1))
 
 
 def ray_coordinates(

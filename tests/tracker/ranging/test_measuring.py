@@ -10,7 +10,7 @@ CAMERA = CameraModel(460.0, 460.0, 320.0, 240.0)
 AT_ORIGIN = RigidTransform()
 
 
-def hands_toward(*points, raised=True, right=None):
+def hands_toward(*points, raised=True, right=None, thumb=0):
     """Hands whose wrists stand at points (x, y) of the camera's body frame, 0.3 m up."""
     count = len(points)
     landmarks = np.zeros((count, 21, 2))
@@ -18,6 +18,9 @@ def hands_toward(*points, raised=True, right=None):
         wrist = np.array([320.0 - 460.0 * y / x, 240.0 - 460.0 * 0.3 / x])
         landmarks[row] = wrist
         landmarks[row, 12] = wrist - [0.0, 460.0 * 0.18 / x]
+        landmarks[row, 9] = wrist - [0.0, 460.0 * 0.095 / x]
+        # The thumb points to the image's right where `thumb` is 1, to its left where it is -1.
+        landmarks[row, 4, 0] += thumb * 460.0 * 0.1 / x
     one = np.ones(count)
     right = one if right is None else np.asarray(right, float)
     return Hands(landmarks, one, right, np.full(count, raised), one)
@@ -53,12 +56,21 @@ def test_ranging_spec_follows_the_ray_of_a_camera_beside_the_laser(cast):
     assert found.values[0] == pytest.approx([0.0, 1.7], abs=0.03)
 
 
-def test_of_two_people_at_the_ray_the_nearer_is_taken(cast, legs):
+def test_of_two_people_at_the_ray_the_one_as_near_as_the_hand_is_large(cast, legs):
     scan = cast(legs(1.2, 0.25) + legs(3.0, -0.1))
-    found = measure_people(
-        hands_toward((1.2, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
-    )
-    assert positions(found)[0] == pytest.approx([1.2, 0.25], abs=0.06)
+    for point, owner in [((1.2, 0.0), (1.2, 0.25)), ((3.0, 0.0), (3.0, -0.1))]:
+        found = measure_people(hands_toward(point), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+        assert positions(found)[0] == pytest.approx(owner, abs=0.07)
+
+
+@pytest.mark.parametrize(("thumb", "owner_y"), [(1, -0.35), (-1, 0.35)])
+def test_of_two_people_beside_the_hand_the_one_at_whom_the_thumb_points(
+    cast, legs, thumb, owner_y
+):
+    scan = cast(legs(1.5, 0.35) + legs(1.5, -0.35))
+    hands = hands_toward((1.5, 0.0), thumb=thumb)
+    found = measure_people(hands, CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+    assert positions(found)[0] == pytest.approx([1.5, owner_y], abs=0.06)
 
 
 def test_without_a_scan_the_hand_is_a_bearing_only():
