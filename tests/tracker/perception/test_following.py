@@ -1,0 +1,193 @@
+import numpy as np
+import pytest
+
+from tracker.config import Config
+from tracker.containers import CameraImage
+from tracker.perception.following import HandFollower, drop_known, drop_repeated
+from tracker.perception.landmarks import Landmarks
+from tracker.perception.palm_search import Palms
+from tracker.perception.regions import Regions
+
+SIDE_PX = 100.0
+
+# In sides of the region. The steady landmarks span half a side, a little below the middle, so that
+# the region of these landmarks is the very region they were read from.
+HAND = np.zeros((21, 2))
+HAND[0], HAND[5], HAND[9], HAND[13] = (0, 0.3), (-0.1, -0.2), (0, -0.2), (0.1, -0.2)
+
+
+def hand_at(center):
+    return HAND * SIDE_PX + center
+
+
+class World:
+    """Hands at known places, seen by a searcher and a reader that never err."""
+
+    def __init__(self, *centers):
+        self.centers = [np.array(center, float) for center in centers]
+        self.score = 0.9
+        self.searches = []
+        self.hidden_from_search = False
+
+    def find(self, bgr, confidence, *, window=None, shrink=1):
+        self.searches.append((confidence, window, shrink))
+        if self.hidden_from_search or not self.centers:
+            return Palms.none()
+        size = SIDE_PX / 2.6
+        middle = np.array(self.centers) + np.array([0, size / 2])
+        keypoints = np.repeat(middle[:, None], 7, axis=1)
+        keypoints[:, 0] += (0, 10)
+        keypoints[:, 2] -= (0, 10)
+        boxes = np.concatenate([middle - size / 2, middle + size / 2], axis=-1)
+        return Palms(boxes, keypoints, np.full(len(boxes), 0.8))
+
+    def read(self, bgr, regions):
+        points, scores = np.zeros((len(regions), 21, 2)), np.zeros(len(regions))
+        for row, center in enumerate(regions.center_px):
+            near = [one for one in self.centers if np.linalg.norm(one - center) < 0.3 * SIDE_PX]
+            points[row] = hand_at(near[0] if near else center)
+            scores[row] = self.score if near else 0.1
+        return Landmarks(points, scores, np.full(len(regions), 0.5))
+
+
+def image(stamp_ns=0, frame_id="camera", size=(480, 640)):
+    return CameraImage(stamp_ns, frame_id, np.zeros((*size, 3), np.uint8))
+
+
+def wrists(hands):
+    return (hands.points_px[:, 0] - HAND[0] * SIDE_PX).tolist()
+
+
+def test_every_hand_of_the_first_image_is_found():
+    world = World((100, 100), (300, 100), (500, 300))
+    hands = HandFollower(world, world).step(image(), Config())
+    assert wrists(hands) == [[100, 100], [300, 100], [500, 300]]
+
+
+def test_search_rests_while_as_many_hands_are_followed_as_allowed():
+    world = World((100, 100), (300, 100))
+    follower, config = HandFollower(world, world), Config(max_hands=2)
+    for stamp in range(5):
+        assert len(follower.step(image(stamp), config)) == 2
+    assert len(world.searches) == 1
+
+
+def test_search_goes_on_while_fewer_are_followed_and_adds_nobody_twice():
+    world = World((100, 100))
+    follower, config = HandFollower(world, world), Config(max_hands=2)
+    for stamp in range(3):
+        assert len(follower.step(image(stamp), config)) == 1
+    assert len(world.searches) == 3
+    world.centers.append(np.array([300.0, 100.0]))
+    assert wrists(follower.step(image(3), config)) == [[100, 100], [300, 100]]
+
+
+def test_a_followed_hand_is_kept_where_the_search_would_miss_it():
+    world = World((100, 100))
+    follower = HandFollower(world, world)
+    follower.step(image(0), Config())
+    world.hidden_from_search = True
+    for stamp in range(1, 6):
+        world.centers[0] = world.centers[0] + (15, 5)
+        assert wrists(follower.step(image(stamp), Config())) == [world.centers[0].tolist()]
+
+
+def test_followed_hands_keep_their_rows_whatever_the_search_finds_first():
+    world = World((100, 100), (300, 100))
+    follower = HandFollower(world, world)
+    follower.step(image(0), Config())
+    world.centers.reverse()
+    assert wrists(follower.step(image(1), Config())) == [[100, 100], [300, 100]]
+
+
+@pytest.mark.parametrize(("confidence", "count"), [(0.55, 1), (0.65, 0)])
+def test_a_hand_is_kept_from_tracking_confidence_on(confidence, count):
+    world = World((100, 100))
+    follower = HandFollower(world, world)
+    config = Config(tracking_confidence=confidence)
+    follower.step(image(0), config)
+    world.score = 0.6
+    assert len(follower.step(image(1), config)) == count
+
+
+def test_a_hand_that_left_makes_room_for_another():
+    world = World((100, 100))
+    follower, config = HandFollower(world, world), Config(max_hands=1)
+    follower.step(image(0), config)
+    world.centers = [np.array([400.0, 300.0])]
+    assert len(follower.step(image(1), config)) == 0
+    assert wrists(follower.step(image(2), config)) == [[400, 300]]
+
+
+@pytest.mark.parametrize(
+    "odd",
+    [image(5), image(20, frame_id="other"), image(20, size=(240, 320))],
+    ids=["stamp that jumps back", "another camera", "another size"],
+)
+def test_following_starts_anew_after_a(odd):
+    world = World((100, 100))
+    follower = HandFollower(world, world)
+    assert len(follower.step(image(10), Config())) == 1
+    world.hidden_from_search = True
+    assert len(follower.step(odd, Config())) == 0
+
+
+def test_following_starts_anew_after_reset():
+    world = World((100, 100))
+    follower = HandFollower(world, world)
+    follower.step(image(10), Config())
+    follower.reset()
+    world.hidden_from_search = True
+    assert len(follower.step(image(11), Config())) == 0
+
+
+def test_no_more_hands_than_allowed_even_after_the_limit_is_lowered():
+    world = World((100, 100), (300, 100), (500, 300))
+    follower = HandFollower(world, world)
+    assert len(follower.step(image(0), Config(max_hands=2))) == 2
+    assert wrists(follower.step(image(1), Config(max_hands=1))) == [[100, 100]]
+
+
+def test_parameters_reach_the_search():
+    world = World()
+    config = Config(detection_confidence=0.7, downscale_factor=3)
+    assert len(HandFollower(world, world).step(image(), config)) == 0
+    assert world.searches == [(0.7, None, 3)]
+
+
+def test_two_regions_that_lead_to_one_hand_give_one_row():
+    world = World((100, 100))
+    shifted = World((100, 100), (128, 128))  # regions of less than half overlap, one hand
+    shifted.read = world.read
+    assert wrists(HandFollower(shifted, shifted).step(image(), Config())) == [[100, 100]]
+
+
+def test_palms_that_make_no_region_are_passed_over():
+    world = World((100, 100))
+    world.find = lambda *_, **__: Palms(
+        np.array([[5.0, 5, 5, 5], [np.nan] * 4]), np.zeros((2, 7, 2)), np.ones(2)
+    )
+    assert len(HandFollower(world, world).step(image(), Config())) == 0
+
+
+def test_found_regions_over_known_ones_are_dropped():
+    def regions(*centers):
+        return Regions(
+            np.array(centers, float), np.full(len(centers), 10.0), np.zeros(len(centers))
+        )
+
+    # Shifted by 3 of 10: overlap 70 / 130 = 0.54. By 4: 60 / 140 = 0.43.
+    found = regions((3, 0), (4, 0), (40, 0), (43, 0))
+    left = drop_known(found, regions((0, 0)))
+    assert left.center_px.tolist() == [[4, 0], [40, 0]]
+
+
+def test_of_the_same_hand_the_surest_row_stays_and_order_is_kept():
+    points = np.stack([hand_at((300, 100)), hand_at((100, 100)), hand_at((101, 101))])
+    hands = drop_repeated(Landmarks(points, np.array([0.6, 0.7, 0.9]), np.zeros(3)))
+    assert hands.score.tolist() == [0.6, 0.9]
+
+
+def test_hands_that_clasp_stay_two():
+    points = np.stack([hand_at((100, 100)), hand_at((115, 100))])
+    assert len(drop_repeated(Landmarks(points, np.array([0.6, 0.7]), np.zeros(2)))) == 2

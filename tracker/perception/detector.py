@@ -1,0 +1,29 @@
+"""What must a hand detector be able to do? The one interface behind which any model can stand."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+from tracker.config import Config
+from tracker.containers import CameraImage, Hands
+
+
+@runtime_checkable
+class HandDetector(Protocol):
+    """Finds hands in one picture after the other; `HandFinder` is the one that comes along.
+
+    A detector of your own, around a pose model for example, fills `Hands.landmarks_px` in
+    MediaPipe's order; `raise_rules.judge_raised` gives the verdict on them.
+    """
+
+    def find(self, image: CameraImage) -> Hands:
+        """Every hand of the image, in pixels of the full image."""
+        ...
+
+    def reset(self) -> None:
+        """Forget earlier images; the next one starts from nothing."""
+        ...
+
+    def configure(self, config: Config) -> None:
+        """Take over changed parameters, from the next image on."""
+        ...

@@ -1,0 +1,50 @@
+"""How does a piece of the picture reach a model? Shrinking, cutting out, turning into numbers."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import cv2
+import numpy as np
+
+from tracker.containers import FloatArray, ImageArray
+
+#: Shape (1, height, width, 3), RGB in [0, 1].
+ModelInput: TypeAlias = np.ndarray[Any, np.dtype[np.float32]]
+
+
+def shrink_picture(bgr: ImageArray, factor: int) -> ImageArray:
+    """A picture smaller by a whole factor, at least one pixel; the very same for factor 1.
+
+    Args:
+        bgr: Shape (height, width, 3).
+        factor: How many pixels become one, along each axis.
+    """
+    if factor <= 1:
+        return bgr
+    height, width = bgr.shape[:2]
+    size = (max(1, round(width / factor)), max(1, round(height / factor)))
+    return np.asarray(cv2.resize(bgr, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+def cut_out(
+    bgr: ImageArray, picture_from_input: FloatArray, input_px: int, border: int
+) -> ModelInput:
+    """A square cut out of a picture, interpolated linearly, as the hand models want it.
+
+    Args:
+        bgr: Shape (height, width, 3).
+        picture_from_input: Shape (2, 3): affine map from pixels of the square to the picture's.
+        input_px: Side of the square.
+        border: OpenCV's way to fill what lies outside of the picture.
+    """
+    square = cv2.warpAffine(
+        bgr,
+        picture_from_input,
+        (input_px, input_px),
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=border,
+    )
+    rgb = cv2.cvtColor(square, cv2.COLOR_BGR2RGB)
+    pixels: ModelInput = np.multiply(rgb, np.float32(1 / 255), dtype=np.float32)
+    return pixels[None]

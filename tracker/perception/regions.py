@@ -1,0 +1,157 @@
+"""Which piece of the picture holds one hand? Rotated squares, from palms and from landmarks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tracker.containers import FloatArray
+
+#: How much of the hand's own size a region takes in, and how far its center moves towards the
+#: fingers, in sizes. The landmark model was trained on regions of exactly these shapes (Zhang et
+#: al., "MediaPipe Hands", 2020), so they are no parameters.
+PALM_SCALE, PALM_SHIFT = 2.6, 0.5
+LANDMARK_SCALE, LANDMARK_SHIFT = 2.0, 0.1
+
+WRIST, INDEX_ROOT, MIDDLE_ROOT, RING_ROOT = 0, 5, 9, 13
+#: The landmarks that span a hand's region: without fingertips, so that it stays the same size when
+#: the fingers close.
+STEADY_LANDMARKS = (0, 1, 2, 3, 5, 6, 9, 10, 13, 14, 17, 18)
+#: Key points of the palm model that give its direction.
+PALM_WRIST, PALM_MIDDLE_ROOT = 0, 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Regions:
+    """Rotated squares in the full image; row i of each array is one region.
+
+    Attributes:
+        center_px: Shape (R, 2): x to the right, y down.
+        side_px: Shape (R,).
+        rotation_rad: Shape (R,): 0 where the fingers point up, positive clockwise on the screen.
+    """
+
+    center_px: FloatArray
+    side_px: FloatArray
+    rotation_rad: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.side_px)
+
+    def __getitem__(self, rows: Any) -> Regions:
+        return replace(
+            self,
+            center_px=self.center_px[rows],
+            side_px=self.side_px[rows],
+            rotation_rad=self.rotation_rad[rows],
+        )
+
+    @staticmethod
+    def none() -> Regions:
+        """No region at all."""
+        return Regions(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
+
+    @staticmethod
+    def concatenate(*parts: Regions) -> Regions:
+        """Join batches, rows in the order given."""
+        return Regions(
+            np.concatenate([part.center_px for part in parts]),
+            np.concatenate([part.side_px for part in parts]),
+            np.concatenate([part.rotation_rad for part in parts]),
+        )
+
+
+def regions_from_palms(boxes_px: FloatArray, keypoints_px: FloatArray) -> Regions:
+    """The regions in which the hands of detected palms lie.
+
+    Args:
+        boxes_px: Shape (P, 4): x_min, y_min, x_max, y_max of the palms.
+        keypoints_px: Shape (P, 7, 2): the palm model's key points.
+    """
+    rotation = upright_rotation(keypoints_px[:, PALM_WRIST], keypoints_px[:, PALM_MIDDLE_ROOT])
+    size = boxes_px[:, 2:] - boxes_px[:, :2]
+    center = (boxes_px[:, :2] + boxes_px[:, 2:]) / 2
+    return _hand_square(center, size, rotation, PALM_SCALE, PALM_SHIFT)
+
+
+def regions_from_landmarks(landmarks_px: FloatArray) -> Regions:
+    """The regions in which hands will be looked for in the next image.
+
+    Args:
+        landmarks_px: Shape (H, 21, 2).
+    """
+    roots = landmarks_px[:, [INDEX_ROOT, RING_ROOT]].mean(axis=1)
+    towards = (roots + landmarks_px[:, MIDDLE_ROOT]) / 2
+    rotation = upright_rotation(landmarks_px[:, WRIST], towards)
+    points = landmarks_px[:, STEADY_LANDMARKS]
+    origin = (points.min(axis=1) + points.max(axis=1)) / 2
+    upright = _rotate(points - origin[:, None], -rotation[:, None])
+    low, high = upright.min(axis=1), upright.max(axis=1)
+    center = origin + _rotate((low + high) / 2, rotation)
+    return _hand_square(center, high - low, rotation, LANDMARK_SCALE, LANDMARK_SHIFT)
+
+
+def upright_rotation(wrist_px: FloatArray, fingers_px: FloatArray) -> FloatArray:
+    """How far a hand is turned clockwise from pointing up.
+
+    Args:
+        wrist_px: Shape (H, 2).
+        fingers_px: Shape (H, 2): where the fingers begin.
+
+    Returns:
+        Shape (H,), radians in [-pi, pi].
+    """
+    along = fingers_px - wrist_px
+    return np.asarray(np.arctan2(along[:, 0], -along[:, 1]), dtype=np.float64)
+
+
+def overlap(first: Regions, second: Regions) -> FloatArray:
+    """Intersection over union of every pair, as if the squares were not turned.
+
+    Returns:
+        Shape (F, S), in [0, 1].
+    """
+    return box_overlap(_upright_boxes(first), _upright_boxes(second))
+
+
+def box_overlap(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Intersection over union of every pair of boxes.
+
+    Args:
+        first: Shape (F, 4): x_min, y_min, x_max, y_max.
+        second: Shape (S, 4), likewise.
+
+    Returns:
+        Shape (F, S), in [0, 1]; boxes without area overlap with nothing.
+    """
+    low = np.maximum(first[:, None, :2], second[None, :, :2])
+    high = np.minimum(first[:, None, 2:], second[None, :, 2:])
+    common = np.prod(np.maximum(high - low, 0.0), axis=-1)
+    union = _areas(first)[:, None] + _areas(second)[None, :] - common
+    ratio: FloatArray = np.divide(common, union, out=np.zeros_like(common), where=union > 0.0)
+    return ratio
+
+
+def _areas(boxes: FloatArray) -> FloatArray:
+    return np.asarray(np.prod(np.maximum(boxes[:, 2:] - boxes[:, :2], 0.0), axis=-1))
+
+
+def _upright_boxes(regions: Regions) -> FloatArray:
+    half = regions.side_px[:, None] / 2
+    return np.concatenate([regions.center_px - half, regions.center_px + half], axis=-1)
+
+
+def _hand_square(
+    center: FloatArray, size: FloatArray, rotation: FloatArray, scale: float, shift: float
+) -> Regions:
+    forward = np.stack([np.zeros(len(size)), -shift * size[:, 1]], axis=-1)  # "up" in the hand
+    return Regions(center + _rotate(forward, rotation), scale * size.max(axis=-1), rotation)
+
+
+def _rotate(vectors: FloatArray, angle_rad: FloatArray) -> FloatArray:
+    """Turn vectors of shape (..., 2) clockwise on the screen."""
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
