@@ -251,6 +251,13 @@ class Config(BaseModel):
         unit="m", group="selection", live=True, gt=0.0, le=5.0,
     )  # fmt: skip
 
+    # The nodes' own; recordings are read as they are.
+    image_transport: Literal["raw", "compressed"] = _parameter(
+        "raw", "How a node gets its images: raw (`image_raw`) or compressed "
+        "(`image_raw/compressed`).",
+        group="node",
+    )  # fmt: skip
+
     @model_validator(mode="after")
     def _window_holds_detections(self) -> Config:
         if self.confirm_detections > self.confirm_window:

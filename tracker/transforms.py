@@ -51,6 +51,11 @@ class Transforms(Protocol):
         """Whether `lookup` would answer."""
         ...
 
+    @property
+    def frames(self) -> set[str]:
+        """Every frame heard of."""
+        ...
+
     def forget_after(self, stamp_ns: int) -> None:
         """Drop what is later than a stamp."""
         ...

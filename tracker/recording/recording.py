@@ -130,6 +130,11 @@ class Recording:
         return self._holds(self.read_topics.image, *_IMAGES, *_PICTURES)
 
     @property
+    def image_topics(self) -> list[str]:
+        """Every topic with pictures, whether it is the one asked for or not."""
+        return [topic for topic in self.topics if self._holds(topic, *_IMAGES)]
+
+    @property
     def has_scans(self) -> bool:
         """Scans are on the scan topic."""
         return self._holds(self.read_topics.scan, types.LASER_SCAN)
@@ -178,7 +183,7 @@ class Recording:
         """
         if self.has_images:
             return
-        holding = [topic for topic in self.topics if self._holds(topic, *_IMAGES)]
+        holding = self.image_topics
         what = ", ".join(
             f"{topic} ({info.type_name}, {info.count})"
             for topic, info in sorted(self.topics.items())

@@ -1,0 +1,59 @@
+# Each target sets up what it needs in .venv; Python >= 3.10 with pip is all that must be there.
+#   make test NUMPY=1.26.4     the tests with that numpy, in a venv of its own
+#   make demo PYTHON=python3.12
+
+PYTHON ?= python3
+NUMPY ?=
+VENV := .venv$(if $(NUMPY),-numpy-$(NUMPY))
+BIN := $(VENV)/bin
+INSTALL := PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --disable-pip-version-check \
+	$(if $(NUMPY),"numpy==$(NUMPY)")
+
+.PHONY: help demo test lint bench config setup
+.DEFAULT_GOAL := help
+
+help:  ## this index
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 14
+
+demo: $(VENV)/.installed  ## simulate a restaurant, replay it, print who raised a hand and where
+	$(BIN)/raised-hand demo
+
+test: $(VENV)/.installed-test  ## run the tests
+	$(BIN)/python -m pytest -n auto --maxprocesses 2
+
+lint: $(VENV)/.installed-lint  ## style and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: $(VENV)/.installed-test  ## time the product against its peers
+	@set -e; for file in benchmarks/[a-z]*.py; do echo "$$file"; $(BIN)/python "$$file"; done
+
+config: $(VENV)/.installed  ## write config/hand_detector.yaml anew from tracker/config.py
+	$(BIN)/python -m tracker.config_file config/hand_detector.yaml
+
+setup: $(VENV)/.installed $(VENV)/.installed-test $(VENV)/.installed-lint  ## everything for development
+
+# One stamp file per set of dependencies, so that a repeated call is quick.
+$(VENV)/.installed: pyproject.toml setup.py | $(VENV)/.created
+	@echo "Installing into $(VENV) ..."
+	@$(INSTALL) --editable .
+	@touch $@
+
+$(VENV)/.installed-%: pyproject.toml setup.py | $(VENV)/.created
+	@echo "Installing into $(VENV), with what $* needs ..."
+	@$(INSTALL) --editable ".[$*]"
+	@touch $@
+
+# Debian's Python comes without ensurepip; the pip beside it (22.3 or later) serves then.
+$(VENV)/.created:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
+		{ echo "$(PYTHON) is not Python 3.10 or later; name one: make ... PYTHON=python3.12"; exit 1; }
+	@if $(PYTHON) -c 'import ensurepip' 2>/dev/null; then \
+		$(PYTHON) -m venv $(VENV); \
+	else \
+		$(PYTHON) -m venv --without-pip $(VENV) && \
+		$(PYTHON) -m pip --python $(BIN)/python install --quiet pip; \
+	fi || { echo "No virtual environment can be made; on Debian and Ubuntu:" \
+		"sudo apt install python3-venv"; exit 1; }
+	@touch $@

@@ -1,0 +1,40 @@
+"""What colcon and the wheel need beside pyproject.toml: the scenes as a package, the ROS files.
+
+colcon understands a Python package by its setup.py alone, so name, version, Python and the test
+extra stand here again; tests/test_packaging.py holds the two files together.
+"""
+
+from glob import glob
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = "raised_hand_tracker"
+SHARE = f"share/{PACKAGE}"
+
+setup(
+    name="raised-hand-tracker",
+    version="0.1.0",
+    python_requires=">=3.10",
+    packages=[*find_packages(include=["tracker*", "nodes*"]), "tracker.scenes"],
+    package_dir={"tracker.scenes": "config/scenes"},
+    package_data={"tracker": ["py.typed"], "tracker.scenes": ["*.yaml"]},
+    extras_require={
+        "test": [
+            "pytest>=8,<10",
+            "pytest-xdist>=3.5,<4",
+            "hypothesis>=6.100,<7",
+            "filterpy>=1.4.5,<3",
+            "ai-edge-litert>=1.2,<3",
+            "rosbags-image>=0.10,<0.12",
+        ]
+    },
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (SHARE, [path for path in ["package.xml"] if Path(path).is_file()]),
+        (f"{SHARE}/config", sorted(glob("config/*.yaml") + glob("config/*.rviz"))),
+        (f"{SHARE}/config/scenes", sorted(glob("config/scenes/*.yaml"))),
+        (f"{SHARE}/launch", sorted(glob("nodes/launch/*.launch.py"))),
+    ],
+    zip_safe=False,
+)

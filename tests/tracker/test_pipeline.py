@@ -1,0 +1,201 @@
+import numpy as np
+import pytest
+
+from tracker import CameraImage, Config, Hands, Pipeline, Scan
+from tracker.camera import CameraModel
+from tracker.geometry import RigidTransform, euler_to_quaternion
+from tracker.transforms import StampedTransform
+
+PERIOD_NS = 100_000_000
+IDENTITY = RigidTransform()
+START_NS = 10_000_000_000
+
+
+class SeenHands:
+    """A detector that finds what it is told: one raised hand at each pixel."""
+
+    def __init__(self, *wrists_px):
+        self.wrists_px = wrists_px
+        self.resets = 0
+
+    def find(self, image):
+        if not self.wrists_px:
+            return Hands.none()
+        landmarks = np.tile(np.array(self.wrists_px, float)[:, None], (1, 21, 1))
+        landmarks[:, 12, 1] -= 60.0
+        one = np.ones(len(self.wrists_px))
+        return Hands(landmarks, one, one, one.astype(bool), one)
+
+    def reset(self):
+        self.resets += 1
+
+    def configure(self, config):
+        pass
+
+
+def image_at(stamp_ns):
+    return CameraImage(stamp_ns, "camera_link", np.zeros((480, 640, 3), np.uint8))
+
+
+def person_scan(stamp_ns, x=2.0, y=0.0, radius=0.2):
+    """A 0..2 pi scan by a laser at the origin: somebody at (x, y), a round wall at 6 m."""
+    angles = np.radians(np.arange(720) / 2)
+    along = x * np.cos(angles) + y * np.sin(angles)
+    across = -x * np.sin(angles) + y * np.cos(angles)
+    hit = (np.abs(across) < radius) & (along > 0)
+    depth = along - np.sqrt(np.maximum(radius**2 - across**2, 0.0))
+    return Scan(stamp_ns, "laser", 0.0, np.radians(0.5), 0.05, 12.0, np.where(hit, depth, 6.0))
+
+
+def static(parent, child, transform=IDENTITY):
+    return StampedTransform(0, parent, child, transform, is_static=True)
+
+
+@pytest.fixture
+def located():
+    """A pipeline whose camera and laser stand at the map's origin, with a hand straight ahead."""
+    pipeline = Pipeline(Config(), SeenHands((320, 100)))
+    pipeline.add_transform(static("map", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+    return pipeline
+
+
+def play(pipeline, frames, start_ns=START_NS, scan=person_scan):
+    results = []
+    for number in range(frames):
+        stamp_ns = start_ns + number * PERIOD_NS
+        if scan is not None:
+            pipeline.add_scan(scan(stamp_ns))
+        pipeline.add_image(image_at(stamp_ns))
+        results += [result for _, result in pipeline.advance(stamp_ns)]
+    return results
+
+
+def test_a_raised_hand_gives_the_person_s_pose_in_the_map(located):
+    results = play(located, 4)
+    assert [result.hand_raised for result in results] == [False, True, True, True]
+    pose = results[-1].customer_pose
+    assert pose.frame_id == "map"
+    assert pose.stamp_ns == results[-1].stamp_ns
+    assert pose.position_m == pytest.approx((2.0, 0.0, 0.0), abs=0.15)
+    assert results[-1].approach_pose.position_m[0] == pytest.approx(
+        pose.position_m[0] - 0.8, abs=1e-6
+    )
+    assert results[0].customer_pose is None
+
+
+def test_a_turning_robot_sees_a_standing_person_stand():
+    pipeline = Pipeline(Config(), SeenHands((320, 100)))
+    pipeline.add_transform(static("base_link", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+    for number in range(-5, 20):
+        stamp_ns = START_NS + number * PERIOD_NS // 5
+        yaw = 0.5 * number / 50
+        pose = RigidTransform((0, 0, 0), euler_to_quaternion(0, 0, yaw))
+        pipeline.add_transform(StampedTransform(stamp_ns, "map", "base_link", pose))
+    detector = pipeline.detector
+    for number in range(4):
+        yaw = 0.5 * number / 10
+        detector.wrists_px = ((320 + 460 * np.tan(yaw), 100),)
+        result = play(pipeline, 1, START_NS + number * PERIOD_NS)[0]
+    assert result.tracks.mean[0, :2] == pytest.approx([2.0, 0.0], abs=0.15)
+    assert len(result.tracks) == 1
+
+
+def test_hand_raised_needs_no_lidar_and_gives_no_pose_then(located):
+    result = play(located, 4, scan=None)[-1]
+    assert result.hand_raised
+    assert result.customer_pose is None
+    assert result.notes == ("no scan has come",)
+
+
+def test_an_old_scan_is_not_used(located):
+    located.add_scan(person_scan(START_NS - 2_000_000_000))
+    result = play(located, 2, scan=None)[-1]
+    assert result.scan is None
+    assert result.notes[0].startswith("no scan within 0.25 s")
+
+
+def test_a_scan_without_beams_is_noted(located):
+    empty = lambda stamp: Scan(stamp, "laser", 0.0, 0.0, 0.1, 10.0, np.zeros(0))  # noqa: E731
+    result = play(located, 2, scan=empty)[-1]
+    assert result.notes == ("the scan has no beams",)
+
+
+def test_without_transforms_hands_are_still_reported_and_no_pose_is_given():
+    pipeline = Pipeline(Config(), SeenHands((320, 100)))
+    results = play(pipeline, 8)
+    assert results[-1].hand_raised
+    assert all(result.customer_pose is None for result in results)
+    assert "no transform names the frame" in results[-1].notes[0].lower()
+
+
+def test_an_image_waits_for_the_transform_of_its_stamp():
+    pipeline = Pipeline(Config(transform_wait_s=0.2), SeenHands())
+    moved = RigidTransform((1.0, 0.0, 0.0))
+    pipeline.add_transform(StampedTransform(START_NS - PERIOD_NS, "map", "camera_link", moved))
+    pipeline.add_image(image_at(START_NS))
+    assert list(pipeline.advance(START_NS)) == []
+    assert list(pipeline.advance(START_NS + PERIOD_NS)) == []
+    pipeline.add_transform(StampedTransform(START_NS + PERIOD_NS, "map", "camera_link", moved))
+    ((_, result),) = pipeline.advance(START_NS + PERIOD_NS)
+    assert result.sensor_pose == pytest.approx([1.0, 0.0, 0.0])
+
+
+def test_an_image_does_not_wait_for_ever():
+    pipeline = Pipeline(Config(transform_wait_s=0.2), SeenHands())
+    pipeline.add_image(image_at(START_NS))
+    assert list(pipeline.advance(START_NS + PERIOD_NS)) == []
+    assert len(list(pipeline.advance(START_NS + 2 * PERIOD_NS))) == 1
+
+
+def test_a_late_map_frame_begins_the_tracks_anew_in_the_map():
+    pipeline = Pipeline(Config(transform_wait_s=0.0), SeenHands((320, 100)))
+    pipeline.add_transform(static("base_link", "camera_link"))
+    pipeline.add_transform(static("base_link", "laser"))
+    early = play(pipeline, 4)[-1]
+    assert early.tracks.mean[0, :2] == pytest.approx([2.0, 0.0], abs=0.15)
+    pipeline.add_transform(static("map", "base_link", RigidTransform.from_planar(5.0, 1.0, 0.0)))
+    late = play(pipeline, 3, START_NS + 4 * PERIOD_NS)
+    assert any("begin anew" in note for note in late[0].notes)
+    assert late[-1].customer_pose.position_m == pytest.approx((7.0, 1.0, 0.0), abs=0.15)
+
+
+def test_a_looped_recording_resets_and_goes_on(located):
+    play(located, 5, START_NS + 10**10)
+    results = play(located, 4)
+    assert "jumped back" in results[0].notes[0]
+    assert located.detector.resets == 1
+    assert not results[0].hand_raised
+    assert results[-1].hand_raised
+    assert results[-1].tracks.id.tolist() == [2]
+
+
+def test_camera_info_replaces_the_configured_intrinsics(located):
+    located.set_camera(CameraModel(230.0, 230.0, 160.0, 120.0))
+    result = play(located, 1, scan=None)[0]
+    # (320 - 160) / 230 to the right.
+    assert result.measurements.values[0, 0] == pytest.approx(-np.arctan(160 / 230))
+
+
+def test_camera_info_can_be_refused():
+    pipeline = Pipeline(Config(use_camera_info=False), SeenHands((320, 100)))
+    pipeline.set_camera(CameraModel(230.0, 230.0, 160.0, 120.0))
+    assert pipeline.camera.fx == 460.0
+
+
+def test_30_images_a_second_are_processed_at_10_hertz(located):
+    results = []
+    for number in range(90):
+        stamp_ns = START_NS + number * 1_000_000_000 // 30
+        located.add_image(image_at(stamp_ns))
+        results += list(located.advance(stamp_ns))
+    assert len(results) == 30
+
+
+def test_changed_parameters_keep_the_tracks(located):
+    play(located, 4)
+    located.configure(Config(approach_distance_m=1.5))
+    result = play(located, 1, START_NS + 4 * PERIOD_NS)[0]
+    assert result.tracks.id.tolist() == [1]
+    assert result.approach_pose.position_m[0] == pytest.approx(0.5, abs=0.15)

@@ -1,0 +1,74 @@
+"""How does a user read the parameters? The default YAML file and the table of the documentation.
+
+Both are written from the one model in `tracker.config`; `make config` renews the committed file,
+and a test says when that was forgotten.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from itertools import groupby
+from pathlib import Path
+from textwrap import wrap
+
+from tracker.config import NODE_NAME, Config, allowed_values, parameter_extra
+
+GROUP_TITLES = {
+    "specification": "The specification's table 1",
+    "frames": "Frames and camera",
+    "perception": "Perception: image to hands",
+    "ranging": "Ranging: scan to distances",
+    "tracking": "Tracking: measurements to customers",
+    "selection": "Selection and poses",
+    "node": "The nodes",
+}
+
+
+def default_yaml() -> str:
+    """The ROS parameter file of every default, with meaning, unit and range as comments."""
+    lines = [
+        "# Every parameter with its default; written from tracker/config.py by `make config`.",
+        "# live: may change while the node runs.",
+        f"{NODE_NAME}:",
+        "  ros__parameters:",
+    ]
+    for group, names in _groups():
+        lines += ["", f"    # ---- {GROUP_TITLES[group]} ----"]
+        for name in names:
+            live = "; live" if parameter_extra(name)["live"] else ""
+            words = wrap(_description(name), 90, break_on_hyphens=False)
+            lines += [f"    # {line}" for line in [*words, f"({allowed_values(name)}{live})"]]
+            lines.append(f"    {name}: {_written(name)}")
+    return "\n".join(lines) + "\n"
+
+
+def markdown_table() -> str:
+    """One Markdown table per group of parameters."""
+    parts = []
+    for group, names in _groups():
+        rows = [
+            f"| `{name}` | `{_written(name)}` | {allowed_values(name)} "
+            f"| {'yes' if parameter_extra(name)['live'] else 'no'} | {_description(name)} |"
+            for name in names
+        ]
+        header = ["| Parameter | Default | Allowed | Live | Meaning |", "|" + " --- |" * 5]
+        parts.append("\n".join([f"### {GROUP_TITLES[group]}", "", *header, *rows]))
+    return "\n\n".join(parts) + "\n"
+
+
+def _groups() -> list[tuple[str, list[str]]]:
+    grouped = groupby(Config.model_fields, key=lambda name: str(parameter_extra(name)["group"]))
+    return [(group, list(names)) for group, names in grouped]
+
+
+def _description(name: str) -> str:
+    return str(Config.model_fields[name].description)
+
+
+def _written(name: str) -> str:
+    return json.dumps(Config.model_fields[name].default)  # what JSON writes, YAML reads alike
+
+
+if __name__ == "__main__":
+    Path(sys.argv[1]).write_text(default_yaml(), encoding="utf-8")
