@@ -1,0 +1,95 @@
+import numpy as np
+import pytest
+
+from tracker.simulation import load_scene, scene_from_mapping
+from tracker.simulation.camera_view import CameraView, hands_in_view, is_from_behind
+from tracker.simulation.motion import people_at
+from tracker.simulation.projection import Viewpoint
+from tracker.simulation.stream import map_from_camera
+
+
+def view_at(scene, time_s):
+    return Viewpoint.of(scene.camera, map_from_camera(scene, time_s))
+
+
+def quiet(room):
+    """The scene without noise and blur, so that pixels can be compared."""
+    room["camera"].update(noise_std=0.0, blur_px=0.0)
+    return scene_from_mapping(room)
+
+
+def painted(scene, time_s):
+    view = CameraView(scene, np.random.default_rng(0))
+    return view.render(view_at(scene, time_s), people_at(scene, time_s))
+
+
+def test_what_was_painted_before_does_not_change_a_picture(room):
+    scene = quiet(room)
+    painter = CameraView(scene, np.random.default_rng(0))
+    for time_s in (0.0, 0.7, 0.7, 1.5):
+        again = painter.render(view_at(scene, time_s), people_at(scene, time_s))
+        np.testing.assert_array_equal(again, painted(scene, time_s))
+
+
+def test_the_near_hides_the_far(room):
+    here, behind = {"x_m": 1.5, "y_m": 0.0}, {"x_m": 3.5, "y_m": 0.0}
+    room["robot"], room["tables"] = {}, []
+    front = {"id": 1, "path": [here], "look": {"shirt": "#00ff00"}}
+    back = {"id": 2, "path": [behind], "look": {"shirt": "#ff0000"}}
+    for people in ([front, back], [back, front]):
+        room["people"] = people
+        picture = painted(quiet(room), 0.0).astype(int)
+        blue, green, red = picture[60, 80]
+        assert green > 150 > red + blue
+
+
+def test_a_table_hides_the_legs_behind_it(room):
+    room["robot"] = {}
+    room["people"] = [{"id": 1, "path": [{"x_m": 2.5, "y_m": 0.0}]}]
+    room["tables"] = [{"x_m": 1.6, "y_m": 0.0, "plates": 0, "color": "#00ff00"}]
+    picture = painted(quiet(room), 0.0).astype(int)
+    row = round(60 + 115 * (1.2 - 0.74) / (1.6 - 0.1))  # the middle of its top
+    assert picture[row, 80].tolist() == [0, 255, 0]
+
+
+def test_pixel_noise_has_the_asked_size(room):
+    clean = painted(quiet(room), 0.0).astype(float)
+    room["camera"].update(noise_std=4.0, blur_px=0.0)
+    noisy = painted(scene_from_mapping(room), 0.0).astype(float)
+    middle = (clean > 40) & (clean < 215)  # away from the ends of the scale
+    assert (noisy - clean)[middle].std() == pytest.approx(4.0, rel=0.05)
+
+
+def test_a_hand_is_in_view_where_all_of_it_falls_into_the_picture(room):
+    room["robot"] = {}
+    for y_m, expected in ((0.0, True), (0.9, True), (1.3, False), (-0.6, False)):
+        room["people"][1]["path"] = [{"x_m": 1.3, "y_m": y_m}]
+        scene = scene_from_mapping(room)
+        assert hands_in_view(scene, view_at(scene, 0.0), people_at(scene, 0.0))[1] == expected
+
+
+def test_nobody_behind_the_camera_is_in_view(room):
+    room["people"][1]["path"] = [{"x_m": -1.5, "y_m": 0.0}]
+    scene = scene_from_mapping(room)
+    assert not hands_in_view(scene, view_at(scene, 0.0), people_at(scene, 0.0))[1]
+
+
+def test_who_walks_away_shows_the_back(room):
+    room["robot"] = {}
+    room["people"][0]["path"] = [
+        {"at_s": 0.0, "x_m": 2.0, "y_m": 0.0},
+        {"at_s": 1.0, "x_m": 3.0, "y_m": 0.0},
+        {"at_s": 2.0, "x_m": 2.0, "y_m": 0.0},
+    ]
+    scene = scene_from_mapping(room)
+    assert is_from_behind(view_at(scene, 0.5), people_at(scene, 0.5), 0)
+    assert not is_from_behind(view_at(scene, 1.5), people_at(scene, 1.5), 0)
+
+
+@pytest.mark.parametrize("name", ["restaurant", "dining_hall", "lonely"])
+def test_every_hand_of_the_projects_scenes_is_in_view_while_it_is_up(name):
+    scene = load_scene(name)
+    for time_s in np.arange(0.0, scene.duration_s, 0.1):
+        people = people_at(scene, time_s)
+        in_view = hands_in_view(scene, view_at(scene, time_s), people)
+        assert in_view[people.hand_up].all(), f"at {time_s:.1f} s"

@@ -1,0 +1,174 @@
+"""What does the camera see? The room with its people, laid over each other from far to near."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import cv2
+import numpy as np
+
+from tracker.containers import BoolArray, ImageArray
+from tracker.geometry import normalize_angle
+from tracker.simulation.canvas import Sprite
+from tracker.simulation.figure import Look, paint_figure, raised_hand_landmarks
+from tracker.simulation.furniture import TablePainter
+from tracker.simulation.motion import People
+from tracker.simulation.projection import NEAR_M, Viewpoint
+from tracker.simulation.room import RoomPainter, bgr
+from tracker.simulation.scene import Person, Scene
+
+#: Heights of the arm that are painted; the nearest lower one is shown.
+RAISED_STEPS = (0.0, 0.25, 0.5, 0.75, 1.0)
+
+_NOISE_MARGIN_PX = 96
+_SHARP_FROM_M = 0.55  # nearer figures are enlarged
+_BEHIND_RAD = np.radians(105.0)
+
+
+class CameraView:
+    """Renders one scene; figures are painted once, when first seen.
+
+    Args:
+        scene: What is there.
+        rng: Pixel noise.
+    """
+
+    def __init__(self, scene: Scene, rng: np.random.Generator) -> None:
+        self._scene = scene
+        self._room = RoomPainter(scene)
+        self._tables = [TablePainter(table) for table in scene.tables]
+        self._looks = [look_of(person) for person in scene.people]
+        self._figures: dict[tuple[Look, bool], list[_Pyramid]] = {}
+        self._rng = rng
+        camera = scene.camera
+        # Fresh noise for each pixel of each picture takes longer than all the painting; a window
+        # of one larger field, at a random place, looks and detects the same.
+        field = (camera.height + _NOISE_MARGIN_PX, camera.width + _NOISE_MARGIN_PX, 3)
+        noise = rng.normal(0.0, 1.0, field).astype(np.float32) * np.float32(camera.noise_std)
+        noise = np.round(noise)
+        self._lighter = np.clip(noise, 0, 255).astype(np.uint8)
+        self._darker = np.clip(-noise, 0, 255).astype(np.uint8)
+
+    def render(self, view: Viewpoint, people: People) -> ImageArray:
+        """One picture, shape (height, width, 3), BGR."""
+        frame = self._room.paint(view)
+        for _, paint in sorted(self._things(frame, view, people), key=lambda thing: -thing[0]):
+            paint()
+        camera = view.camera
+        if camera.blur_px > 0.0:
+            cv2.GaussianBlur(frame, (0, 0), camera.blur_px, dst=frame)
+        if camera.noise_std > 0.0:
+            row, column = self._rng.integers(0, _NOISE_MARGIN_PX, 2)
+            window = np.s_[row : row + camera.height, column : column + camera.width]
+            cv2.add(frame, self._lighter[window], dst=frame)
+            cv2.subtract(frame, self._darker[window], dst=frame)
+        return frame
+
+    def _things(
+        self, frame: ImageArray, view: Viewpoint, people: People
+    ) -> list[tuple[float, Callable[[], None]]]:
+        """Distance ahead of each table and person, and what paints it."""
+        things: list[tuple[float, Callable[[], None]]] = []
+        places = np.array([(table.x_m, table.y_m) for table in self._scene.tables]).reshape(-1, 2)
+        for table, place in zip(self._tables, view.forward_left(places), strict=True):
+            things.append((float(place[0]), partial(table.paint, frame, view)))
+        for row, look in enumerate(self._looks):
+            ahead_left = view.forward_left(people.xy_m[row])
+            if ahead_left[0] < max(NEAR_M, 0.3):
+                continue
+            behind = is_from_behind(view, people, row)
+            step = int(people.raised[row] * (len(RAISED_STEPS) - 1))
+            anchor = view.pixels(ahead_left, 0.0)
+            figure = self._figure(look, behind)[step]
+            px_per_m = view.camera.fx / ahead_left[0]
+            paint = partial(figure.lay_over, frame, (anchor[0], anchor[1]), px_per_m)
+            things.append((float(ahead_left[0]), paint))
+        return things
+
+    def _figure(self, look: Look, from_behind: bool) -> list[_Pyramid]:
+        key = (look, from_behind)
+        if key not in self._figures:
+            px_per_m = self._scene.camera.fx / _SHARP_FROM_M
+            sprites = paint_figure(look, RAISED_STEPS, px_per_m=px_per_m, from_behind=from_behind)
+            self._figures[key] = [_Pyramid(sprite) for sprite in sprites]
+        return self._figures[key]
+
+
+def hands_in_view(scene: Scene, view: Viewpoint, people: People) -> BoolArray:
+    """Shape (P,): each one's raised hand, wrist to fingertips, would fall into the picture."""
+    answer = np.zeros(len(scene.people), dtype=bool)
+    for row, person in enumerate(scene.people):
+        ahead_left = view.forward_left(people.xy_m[row])
+        if ahead_left[0] < max(NEAR_M, 0.3):
+            continue
+        behind = is_from_behind(view, people, row)
+        hand = raised_hand_landmarks(look_of(person), from_behind=behind)
+        places = np.stack([np.full(len(hand), ahead_left[0]), ahead_left[1] - hand[:, 0]], axis=-1)
+        answer[row] = view.is_in_picture(view.pixels(places, hand[:, 1]))
+    return answer
+
+
+def is_from_behind(view: Viewpoint, people: People, row: int) -> bool:
+    """Whether the camera sees this person's back."""
+    to_camera = np.subtract((view.x_m, view.y_m), people.xy_m[row])
+    away = normalize_angle(np.arctan2(to_camera[1], to_camera[0]) - people.facing_rad[row])
+    return bool(abs(away) > _BEHIND_RAD)
+
+
+def look_of(person: Person) -> Look:
+    """What a scene file says about somebody's looks."""
+    look = person.look
+    return Look(
+        stature_m=look.stature_m,
+        seat_m=person.seat_m,
+        right_handed=person.hand == "right",
+        skin=bgr(look.skin),
+        hair=bgr(look.hair),
+        hair_style=look.hair_style,
+        shirt=bgr(look.shirt),
+        trousers=bgr(look.trousers),
+    )
+
+
+class _Pyramid:
+    """A sprite at halved resolutions, so that any smaller size is one cheap warp away."""
+
+    def __init__(self, sprite: Sprite) -> None:
+        self._levels = [sprite]
+        while min(self._levels[-1].bgra.shape[:2]) > 16:
+            last = self._levels[-1]
+            smaller = cv2.resize(last.bgra, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+            half = np.asarray(smaller, dtype=np.uint8)
+            ratio = half.shape[0] / last.bgra.shape[0]
+            anchor = (last.anchor_px[0] * ratio, last.anchor_px[1] * ratio)
+            self._levels.append(Sprite(half, anchor, last.px_per_m * ratio))
+
+    def lay_over(self, frame: ImageArray, anchor_px: tuple[float, float], px_per_m: float) -> None:
+        """Composite it, its anchor at a place of the frame."""
+        level = max(
+            (item for item in self._levels if item.px_per_m >= px_per_m),
+            key=lambda item: -item.px_per_m,
+            default=self._levels[0],
+        )
+        scale = px_per_m / level.px_per_m
+        left = anchor_px[0] - level.anchor_px[0] * scale
+        top = anchor_px[1] - level.anchor_px[1] * scale
+        height, width = level.bgra.shape[0] * scale, level.bgra.shape[1] * scale
+        first_row, last_row = max(int(top), 0), min(int(top + height) + 2, frame.shape[0])
+        first, last = max(int(left), 0), min(int(left + width) + 2, frame.shape[1])
+        if last_row <= first_row or last <= first:
+            return
+        # Pixel centers: the sprite's pixel (i + 0.5) * scale lands on the frame's.
+        shift = 0.5 * scale - 0.5
+        placed = cv2.warpAffine(
+            level.bgra,
+            np.array([[scale, 0.0, left - first + shift], [0.0, scale, top - first_row + shift]]),
+            (last - first, last_row - first_row),
+            flags=cv2.INTER_LINEAR,
+            borderValue=(0, 0, 0, 0),
+        )
+        under = frame[first_row:last_row, first:last]
+        clear = cv2.cvtColor(255 - placed[..., 3], cv2.COLOR_GRAY2BGR)
+        behind = cv2.multiply(under, clear, scale=1 / 255)
+        under[:] = cv2.add(behind, placed[..., :3])

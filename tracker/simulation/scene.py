@@ -1,0 +1,306 @@
+"""What happens in a simulated room? The scene file: walls, tables, people, the robot, its sensors.
+
+Lengths are meters, angles degrees, times seconds from the start, places in the map frame (x and y
+on the floor). Where a thing stands still, one way-point is enough.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from importlib import resources
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from tracker.errors import SceneError
+
+#: How long an arm takes from the lap to beside the head; a guess from how people wave to a waiter.
+ARM_MOTION_S = 0.4
+
+Color: TypeAlias = Annotated[str, Field(pattern=r"^#[0-9a-fA-F]{6}$")]
+Point: TypeAlias = Annotated[tuple[float, float], Field(strict=False)]
+Stature: TypeAlias = Annotated[float, Field(ge=1.0, le=2.2)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Pose2(_Part):
+    """A place on the floor and a direction."""
+
+    x_m: float = 0.0
+    y_m: float = 0.0
+    yaw_deg: float = 0.0
+
+
+class WayPoint(_Part):
+    """Where somebody is at a time."""
+
+    at_s: float = Field(0.0, ge=0.0)
+    x_m: float
+    y_m: float
+    facing_deg: float | None = Field(
+        None, description="Where the body looks; None: along the way, or at the robot."
+    )
+
+
+class DrivePoint(Pose2):
+    """Where the robot is at a time; it starts and stops smoothly at each such point."""
+
+    at_s: float = Field(0.0, ge=0.0)
+
+
+class Raise(_Part):
+    """One raise: the hand is fully up from one time until another, the arm moves around that."""
+
+    from_s: float = Field(ge=0.0)
+    until_s: float = Field(gt=0.0)
+
+
+class PersonLook(_Part):
+    """Colors and build."""
+
+    stature_m: Stature = 1.72
+    skin: Color = "#d6a078"
+    hair: Color = "#4a3428"
+    hair_style: Literal["short", "long", "bun", "bald"] = "short"
+    shirt: Color = "#3c6e96"
+    trousers: Color = "#384050"
+
+
+class Person(_Part):
+    """Somebody who walks, stops, sits, raises a hand."""
+
+    id: int = Field(ge=1)
+    name: str = ""
+    path: Annotated[tuple[WayPoint, ...], Field(strict=False, min_length=1)]
+    raises: Annotated[tuple[Raise, ...], Field(strict=False)] = ()
+    seat_m: float | None = Field(None, ge=0.3, le=0.9, description="Height of the seat.")
+    hand: Literal["left", "right"] = "right"
+    look: PersonLook = Field(default_factory=PersonLook)
+
+    @model_validator(mode="after")
+    def _possible(self) -> Person:
+        _check_times([point.at_s for point in self.path], "path", "at_s")
+        places = {(point.x_m, point.y_m) for point in self.path}
+        if self.seat_m is not None and len(places) > 1:
+            raise ValueError(
+                f"path has {len(places)} places, but seat_m is {self.seat_m}; "
+                "who sits stays: give one place or leave seat_m out"
+            )
+        edges = [edge for each in self.raises for edge in (each.from_s, each.until_s)]
+        _check_times(edges, "raises", "from_s, until_s")
+        for before, after in pairwise(self.raises):
+            if after.from_s - before.until_s < 2 * ARM_MOTION_S:
+                raise ValueError(
+                    f"raises: the hand is up until {before.until_s} and again from "
+                    f"{after.from_s}; at least {2 * ARM_MOTION_S} s must lie between"
+                )
+        return self
+
+
+class Robot(_Part):
+    """The drive of base_link."""
+
+    path: Annotated[tuple[DrivePoint, ...], Field(strict=False)] = Field(
+        default=(DrivePoint(),), min_length=1
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> Robot:
+        _check_times([point.at_s for point in self.path], "path", "at_s")
+        return self
+
+
+class Camera(_Part):
+    """A level pinhole camera, fixed to base_link."""
+
+    x_m: float = 0.1
+    y_m: float = 0.0
+    z_m: float = Field(1.2, gt=0.0, le=3.0)
+    yaw_deg: float = 0.0
+    frame: Literal["camera_link", "camera_optical_frame"] = "camera_link"
+    rate_hz: float = Field(30.0, gt=0.0, le=240.0)
+    width: int = Field(640, ge=16, le=4096)
+    height: int = Field(480, ge=16, le=4096)
+    fx: float = Field(460.0, gt=0.0)
+    fy: float = Field(460.0, gt=0.0)
+    cx: float = 320.0
+    cy: float = 240.0
+    noise_std: float = Field(1.5, ge=0.0, le=60.0, description="Of each pixel, in gray levels.")
+    blur_px: float = Field(0.5, ge=0.0, le=10.0)
+
+
+class Laser(_Part):
+    """A planar scanner, fixed to base_link."""
+
+    x_m: float = 0.15
+    y_m: float = 0.0
+    z_m: float = Field(0.25, gt=0.0, le=3.0)
+    yaw_deg: float = 0.0
+    frame: str = Field("laser", min_length=1)
+    rate_hz: float = Field(10.0, gt=0.0, le=100.0)
+    first_beam_deg: float = Field(-180.0, ge=-360.0, le=360.0)
+    step_deg: float = Field(0.5, ge=0.05, le=10.0)
+    range_min_m: float = Field(0.12, ge=0.0)
+    range_max_m: float = Field(12.0, gt=0.0)
+    noise_m: float = Field(0.01, ge=0.0, le=1.0)
+    dropout: float = Field(0.01, ge=0.0, lt=1.0, description="Share of beams without a return.")
+
+
+class Wall(_Part):
+    """A run of straight walls through corners."""
+
+    corners_m: Annotated[tuple[Point, ...], Field(strict=False, min_length=2)]
+    closed: bool = False
+    height_m: float = Field(2.6, gt=0.0, le=20.0)
+    color: Color = "#d9cbb2"
+    panel: Color = Field("#8a6a4f", description="The lower part, up to 0.9 m.")
+    pictures: bool = True
+
+    @property
+    def segments(self) -> list[tuple[float, float, float, float]]:
+        """x_m, y_m of each straight piece's two ends."""
+        ends = [*self.corners_m[1:], self.corners_m[0]] if self.closed else self.corners_m[1:]
+        return [(*start, *end) for start, end in zip(self.corners_m, ends, strict=False)]
+
+
+class Table(Pose2):
+    """A rectangular table on one or four posts."""
+
+    length_m: float = Field(0.8, gt=0.0, le=10.0, description="Along its own x axis.")
+    width_m: float = Field(0.8, gt=0.0, le=10.0)
+    height_m: float = Field(0.74, gt=0.0, le=2.0)
+    posts: Literal[1, 4] = 4
+    plates: int = Field(2, ge=0, le=8)
+    color: Color = "#b98a5a"
+
+
+class Scene(_Part):
+    """One simulated recording."""
+
+    title: str = ""
+    duration_s: float = Field(gt=0.0, le=3600.0)
+    start_s: int = Field(1_700_000_000, ge=0, description="Stamp of the first image, Unix time.")
+    map_from_odom: Pose2 = Field(default_factory=Pose2)
+    robot: Robot = Field(default_factory=Robot)
+    camera: Camera = Field(default_factory=Camera)
+    laser: Laser = Field(default_factory=Laser)
+    floor: Color = "#9c8b78"
+    walls: Annotated[tuple[Wall, ...], Field(strict=False)] = ()
+    tables: Annotated[tuple[Table, ...], Field(strict=False)] = ()
+    people: Annotated[tuple[Person, ...], Field(strict=False)] = ()
+
+    @model_validator(mode="after")
+    def _possible(self) -> Scene:
+        ids = [person.id for person in self.people]
+        twice = {number for number in ids if ids.count(number) > 1}
+        if twice:
+            raise ValueError(f"people: the id {min(twice)} occurs twice; each needs its own")
+        if self.laser.range_max_m <= self.laser.range_min_m:
+            raise ValueError(
+                f"laser.range_max_m is {self.laser.range_max_m}; allowed is "
+                f"above range_min_m, which is {self.laser.range_min_m}"
+            )
+        return self
+
+
+def load_scene(name_or_path: str | Path) -> Scene:
+    """Read a scene.
+
+    Args:
+        name_or_path: The name of a scene that comes with the project (`scene_names`), or a file.
+
+    Raises:
+        SceneError: There is no such scene or file, it is no YAML, or something in it is off; the
+            message names each such key, its value and what is allowed.
+    """
+    import yaml
+
+    path = _find(name_or_path)
+    try:
+        document = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read ({error.strerror}).") from error
+    except UnicodeDecodeError as error:
+        raise SceneError(f"{path}: is no UTF-8 text; a YAML file is needed.") from error
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        what = getattr(error, "problem", None) or "syntax error"
+        raise SceneError(f"{path}: is no YAML{where}: {what}.") from error
+    except ValueError as error:  # a date that is none, for one
+        raise SceneError(f"{path}: holds a value that is none ({error}).") from error
+    return scene_from_mapping(document, origin=str(path))
+
+
+def scene_from_mapping(document: Any, origin: str = "scene") -> Scene:
+    """Check a scene that was written down as nested lists and dictionaries.
+
+    Raises:
+        SceneError: As `load_scene`.
+    """
+    if not isinstance(document, dict):
+        raise SceneError(f"{origin}: holds no scene; keys like `duration_s:` are needed.")
+    try:
+        return Scene.model_validate(document)
+    except ValidationError as error:
+        reasons = "; ".join(_reason(item) for item in error.errors())
+        raise SceneError(f"{origin}: {reasons}.") from error
+
+
+def scene_names() -> list[str]:
+    """The scenes that come with the project."""
+    return sorted({path.stem for folder in _folders() for path in folder.glob("*.yaml")})
+
+
+def _find(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if isinstance(name_or_path, Path) or path.suffix in (".yaml", ".yml") or len(path.parts) > 1:
+        return path
+    for folder in _folders():
+        packaged = folder / f"{path}.yaml"
+        if packaged.is_file():
+            return packaged
+    raise SceneError(
+        f"No scene is called {str(name_or_path)!r}; there are "
+        f"{', '.join(scene_names()) or 'none'}. A file of your own needs its ending, .yaml."
+    )
+
+
+def _folders() -> list[Path]:
+    package = Path(str(resources.files("tracker")))
+    # A wheel carries the scenes inside the package; a checkout keeps them under config/.
+    candidates = [package / "scenes", package.parent / "config" / "scenes"]
+    return [folder for folder in candidates if folder.is_dir()]
+
+
+def _check_times(times: list[float], where: str, key: str) -> None:
+    for before, after in pairwise(times):
+        if after <= before:
+            raise ValueError(f"{where}: {key} is {after} after {before}; times must grow")
+
+
+def _reason(item: Any) -> str:
+    key = ".".join(map(str, item["loc"]))
+    message = str(item["msg"])
+    if item["type"] == "extra_forbidden":
+        return f"unknown key `{key}`{_suggestion(str(item['loc'][-1]))}"
+    if item["type"] == "missing":
+        return f"`{key}` is missing"
+    if item["type"] == "value_error":
+        return f"{key}: {message.removeprefix('Value error, ')}".removeprefix(": ")
+    if item["type"] == "string_pattern_mismatch":
+        message = "a color like '#d6a078'"
+    allowed = message.removeprefix("Input should be ")
+    return f"`{key}` is {item['input']!r}; allowed is {allowed}"
+
+
+def _suggestion(name: str) -> str:
+    parts = (Scene, Robot, Camera, Laser, Wall, Table, Person, PersonLook, DrivePoint, WayPoint)
+    known = {key for part in (*parts, Raise) for key in part.model_fields}
+    close = get_close_matches(name, known, n=1)
+    return f"; did you mean `{close[0]}`?" if close else ""
