@@ -1,0 +1,1 @@
+"""Pictures, tables and the summary of a replayed recording, drawn while it streams."""

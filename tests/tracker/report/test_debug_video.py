@@ -1,0 +1,119 @@
+import cv2
+import numpy as np
+import pytest
+
+from tracker.errors import RecordingError
+from tracker.report import debug_video
+from tracker.report.debug_video import DebugVideo, side_by_side
+
+
+def frames_of(path):
+    reader = cv2.VideoCapture(str(path))
+    frames = []
+    while True:
+        is_there, frame = reader.read()
+        if not is_there:
+            return frames, reader.get(cv2.CAP_PROP_FPS)
+        frames.append(frame)
+
+
+def plain(height, width, gray):
+    return np.full((height, width, 3), gray, np.uint8)
+
+
+def test_pictures_come_back_in_number_size_rate_and_order(tmp_path):
+    with DebugVideo(tmp_path / "debug.mp4", 10.0) as video:
+        for number in range(20):
+            video.write(plain(120, 160, 10 * number))
+    frames, rate_hz = frames_of(tmp_path / "debug.mp4")
+    assert len(frames) == 20
+    assert frames[0].shape == (120, 160, 3)
+    assert rate_hz == pytest.approx(10.0)
+    assert [frame.mean() for frame in frames] == pytest.approx(10.0 * np.arange(20), abs=6.0)
+
+
+def test_odd_sides_are_padded_to_even_ones(tmp_path):
+    with DebugVideo(tmp_path / "debug.mp4", 10.0) as video:
+        video.write(plain(121, 161, 200))
+        video.write(plain(121, 161, 200))
+    frames, _ = frames_of(tmp_path / "debug.mp4")
+    assert [frame.shape for frame in frames] == [(122, 162, 3)] * 2
+
+
+def test_a_picture_of_another_size_is_fitted_between_bars(tmp_path):
+    with DebugVideo(tmp_path / "debug.mp4", 10.0) as video:
+        video.write(plain(120, 160, 200))
+        video.write(plain(400, 200, 200))  # upright: bars left and right
+        video.write(plain(30, 160, 200))  # a strip: bars above and below
+    frames, _ = frames_of(tmp_path / "debug.mp4")
+    assert [frame.shape for frame in frames] == [(120, 160, 3)] * 3
+    assert frames[1][:, :40].mean() < 20 < 180 < frames[1][:, 60:100].mean()
+    assert frames[2][:35].mean() < 20 < 180 < frames[2][55:65].mean()
+
+
+def test_an_exception_leaves_a_video_that_plays(tmp_path):
+    def break_off():
+        with DebugVideo(tmp_path / "debug.mp4", 10.0) as video:
+            for _ in range(7):
+                video.write(plain(120, 160, 90))
+            raise KeyError("somebody else's trouble")
+
+    with pytest.raises(KeyError):
+        break_off()
+    assert len(frames_of(tmp_path / "debug.mp4")[0]) == 7
+
+
+def test_no_picture_no_file(tmp_path):
+    with DebugVideo(tmp_path / "debug.mp4", 10.0):
+        pass
+    assert not (tmp_path / "debug.mp4").exists()
+
+
+def test_a_folder_that_does_not_exist_is_named(tmp_path):
+    with pytest.raises(RecordingError, match="nowhere"):
+        DebugVideo(tmp_path / "nowhere" / "debug.mp4", 10.0)
+
+
+def test_an_opencv_without_encoders_is_one_clear_line(tmp_path, monkeypatch, capfd):
+    monkeypatch.setattr(debug_video, "_ENCODINGS", ("zzzz",))
+    with (
+        pytest.raises(RecordingError, match="encodes none of zzzz at 160x120"),
+        DebugVideo(tmp_path / "debug.mp4", 10.0) as video,
+    ):
+        video.write(plain(120, 160, 0))
+    assert not (tmp_path / "debug.mp4").exists()
+
+
+def test_an_almost_full_disk_stops_the_video_while_it_can_still_be_finished(tmp_path, monkeypatch):
+    full = debug_video.shutil.disk_usage(tmp_path)._replace(free=1_000_000)
+
+    def fill_up():
+        with DebugVideo(tmp_path / "debug.mp4", 10.0) as video:
+            for number in range(9):
+                if number == 5:
+                    monkeypatch.setattr(debug_video.shutil, "disk_usage", lambda _: full)
+                video.write(plain(120, 160, 90))
+
+    with pytest.raises(RecordingError, match="free after 5 pictures"):
+        fill_up()
+    assert len(frames_of(tmp_path / "debug.mp4")[0]) == 5
+
+
+def test_a_disk_that_stops_taking_bytes_is_noticed_at_the_end(tmp_path):
+    resource = pytest.importorskip("resource", reason="limits the size of files")
+    rng = np.random.default_rng(3)
+    video = DebugVideo(tmp_path / "debug.mp4", 10.0)
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, hard))
+    try:
+        for _ in range(60):
+            video.write(rng.integers(0, 256, (240, 320, 3), dtype=np.uint8))
+        with pytest.raises(RecordingError, match="of 60 pictures; is the disk full"):
+            video.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+def test_two_pictures_stand_side_by_side_at_the_left_ones_height():
+    assert side_by_side(plain(480, 640, 1), plain(200, 100, 2)).shape == (480, 880, 3)
+    assert side_by_side(plain(480, 640, 1), plain(480, 480, 2)).shape == (480, 1120, 3)
