@@ -5,9 +5,14 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 
 import pytest
+from hypothesis import settings
 
 from tracker.errors import ModelFileError
 from tracker.perception.models import ModelStore, ensure_models
+
+# Seeded, and without a deadline that a busy machine would miss.
+settings.register_profile("tests", deadline=None, derandomize=True)
+settings.load_profile("tests")
 
 
 @pytest.fixture(scope="session")

@@ -121,6 +121,11 @@ class Config(BaseModel):
         1.1, "`raise_rule: palm`: how far the middle finger's tip must be above the wrist.",
         unit="palm lengths", group="perception", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
+    raised_lean_max_deg: float = _parameter(
+        50.0, "`raise_rule: palm`: a hand that leans farther to a side is not up, but on its "
+        "way down.",
+        unit="deg", group="perception", live=True, gt=0.0, le=90.0,
+    )  # fmt: skip
     hand_span_threshold: float = _parameter(
         0.15, "`raise_rule: image`: how far thumb and little finger must be apart.",
         unit="image widths", group="perception", live=True, ge=0.0, le=1.0,

@@ -30,7 +30,9 @@ def judge_raised(
         return image_rule(
             landmarks_px, image_size, config.hand_raised_threshold, config.hand_span_threshold
         )
-    return palm_rule(landmarks_px, config.palm_raised_threshold)
+    return palm_rule(
+        landmarks_px, config.palm_raised_threshold, np.radians(config.raised_lean_max_deg)
+    )
 
 
 def image_rule(
@@ -60,23 +62,30 @@ def image_rule(
     return (up > raised_threshold) & (span > span_threshold), up
 
 
-def palm_rule(landmarks_px: FloatArray, raised_threshold: float) -> tuple[BoolArray, FloatArray]:
+def palm_rule(
+    landmarks_px: FloatArray, raised_threshold: float, lean_max_rad: float
+) -> tuple[BoolArray, FloatArray]:
     """The same question at every distance: the rise in lengths of the palm.
 
-    Raised where (wrist.y - middle_tip.y) / |wrist - middle finger's root| > `raised_threshold`.
+    Raised where (wrist.y - middle_tip.y) / |wrist - middle finger's root| > `raised_threshold` and
+    the hand leans no farther than `lean_max_rad` to a side: an arm that swings down passes through
+    a long hand that still rises, but lies on its side.
     Open hands that point up measure 1.6-2.4, fists about 0.8. The spread of the fingers is not
     asked for: it is 1.8 for an open palm but 0.06-0.5 for three or four fingers.
 
     Args:
         landmarks_px: Shape (H, 21, 2).
         raised_threshold: In palm lengths.
+        lean_max_rad: Of the line from the wrist to the middle finger's tip, from upright.
 
     Returns:
         Verdict and rise in palm lengths, each of shape (H,); a palm without length measures 0.
     """
     palm = np.linalg.norm(landmarks_px[:, MIDDLE_ROOT] - landmarks_px[:, WRIST], axis=-1)
-    up = np.divide(_rise_px(landmarks_px), palm, out=np.zeros(len(palm)), where=palm > 0.0)
-    return up > raised_threshold, up
+    rise = _rise_px(landmarks_px)
+    up = np.divide(rise, palm, out=np.zeros(len(palm)), where=palm > 0.0)
+    aside = np.abs(landmarks_px[:, MIDDLE_TIP, 0] - landmarks_px[:, WRIST, 0])
+    return (up > raised_threshold) & (np.arctan2(aside, rise) <= lean_max_rad), up
 
 
 def _rise_px(landmarks_px: FloatArray) -> FloatArray:

@@ -67,24 +67,24 @@ def test_section_12_threshold_is_honored():
     ids=["open hand", "just up", "not quite up", "fist", "down"],
 )  # fmt: skip
 def test_palm_rule_measures_in_palm_lengths(tip_y, measure, is_raised):
-    raised, measured = palm_rule(hand(tip_y=tip_y), 1.1)
+    raised, measured = palm_rule(hand(tip_y=tip_y), 1.1, np.radians(50))
     assert measured[0] == pytest.approx(measure)
     assert raised.tolist() == [is_raised]
 
 
 @pytest.mark.parametrize("scale", [0.05, 1.0, 7.0])
 def test_palm_rule_holds_at_every_distance(scale):
-    raised, measure = palm_rule(hand() * scale, 1.1)
+    raised, measure = palm_rule(hand() * scale, 1.1, np.radians(50))
     assert raised[0]
     assert measure[0] == pytest.approx(2.0)
 
 
 def test_palm_rule_does_not_ask_for_spread_fingers():
-    assert palm_rule(hand(thumb_x=320.0, pinky_x=321.0), 1.1)[0].tolist() == [True]
+    assert palm_rule(hand(thumb_x=320.0, pinky_x=321.0), 1.1, np.radians(50))[0].tolist() == [True]
 
 
 def test_palm_rule_of_a_palm_without_length_is_not_raised():
-    raised, measure = palm_rule(hand(palm_px=0.0), 1.1)
+    raised, measure = palm_rule(hand(palm_px=0.0), 1.1, np.radians(50))
     assert not raised[0]
     assert measure[0] == 0.0
 
@@ -100,3 +100,16 @@ def test_the_configured_rule_decides():
 def test_no_hands_give_no_verdicts(rule):
     raised, measure = judge_raised(np.zeros((0, 21, 2)), VGA, Config(raise_rule=rule))
     assert raised.shape == measure.shape == (0,)
+
+
+@pytest.mark.parametrize(("lean_deg", "is_raised"), [(0, True), (45, True), (55, False)])
+@pytest.mark.parametrize("side", [-1, 1], ids=["to the left", "to the right"])
+def test_palm_rule_does_not_call_a_hand_raised_that_lies_on_its_side(lean_deg, is_raised, side):
+    # Twice as long as its palm, so it still rises by 2 cos(lean) palms.
+    lean = np.radians(side * lean_deg)
+    landmarks = np.zeros((1, 21, 2))
+    for row, length in [(9, 100.0), (12, 200.0)]:
+        landmarks[0, row] = [length * np.sin(lean), -length * np.cos(lean)]
+    raised, measure = palm_rule(landmarks, 1.1, np.radians(50))
+    assert measure == pytest.approx([2.0 * np.cos(lean)])
+    assert raised.tolist() == [is_raised]

@@ -1,0 +1,137 @@
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from tracker import CameraImage
+from tracker.cli import main
+from tracker.recording import RecordingWriter
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, tmp_path):
+    """Run the command line in an empty folder; gives status, output and complaints."""
+    monkeypatch.chdir(tmp_path)
+
+    def run_command(*words):
+        monkeypatch.setattr(sys, "argv", ["raised-hand", *map(str, words)])
+        with pytest.raises(SystemExit) as stopped:
+            main()
+        printed = capsys.readouterr()
+        return stopped.value.code or 0, printed.out, printed.err
+
+    return run_command
+
+
+def complaint(error):
+    """The one line of a failure."""
+    lines = [line for line in error.splitlines() if line.startswith("raised-hand: ")]
+    assert len(lines) == 1, error
+    assert "Traceback" not in error
+    return lines[0]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        (),
+        ("demo",),
+        ("replay",),
+        ("simulate",),
+        ("models",),
+        ("models", "fetch"),
+        ("models", "list"),
+    ],
+)
+def test_help_explains_every_command(run, words):
+    status, output, _ = run(*words, "--help")
+    assert status == 0
+    assert "Usage" in output
+
+
+def test_an_unknown_command_is_a_usage_error(run):
+    status, _, error = run("dance")
+    assert status == 2
+    assert "dance" in error
+
+
+@pytest.mark.parametrize(
+    ("yaml", "named"),
+    [
+        ("hand_detector:\n  ros__parameters:\n    procesing_rate: 5.0\n", "procesing_rate"),
+        ("hand_detector:\n  ros__parameters:\n    processing_rate: fast\n", "'fast'"),
+        ("hand_detector:\n  ros__parameters:\n    processing_rate: -1.0\n", "-1.0"),
+        ("hand_detector: [\n", "line"),
+    ],
+    ids=["typo", "wrong type", "out of range", "broken"],
+)
+@pytest.mark.model
+def test_a_wrong_parameter_file_is_one_line_and_status_2(run, tmp_path, model_store, yaml, named):
+    (tmp_path / "wrong.yaml").write_text(yaml)
+    (tmp_path / "photos").mkdir()
+    status, _, error = run("replay", "photos", "--config", "wrong.yaml")
+    assert status == 2
+    assert named in complaint(error)
+
+
+@pytest.mark.model
+def test_bad_recordings_are_one_line_and_status_1(run, tmp_path, model_store):
+    (tmp_path / "broken.bag").write_bytes(b"#ROSBAG V2.0\nnonsense")
+    (tmp_path / "broken.db3").write_bytes(b"SQLite format 3\0" + bytes(50))
+    (tmp_path / "broken.mcap").write_bytes(b"\x89MCAP0\r\n")
+    (tmp_path / "broken.mp4").write_bytes(b"no video at all")
+    (tmp_path / "empty").mkdir()
+    for name in ("broken.bag", "broken.db3", "broken.mcap", "broken.mp4", "empty"):
+        status, _, error = run("replay", name)
+        assert status == 1, name
+        assert name in complaint(error)
+
+
+def test_a_recording_that_is_not_there_is_a_usage_error(run):
+    status, _, error = run("replay", "nowhere.mcap")
+    assert status == 2
+    assert "nowhere.mcap" in complaint(error)
+
+
+def test_an_unknown_scene_is_a_usage_error_that_names_those_there_are(run):
+    status, _, error = run("simulate", "moonbase", "--out", "x.mcap")
+    assert status == 2
+    assert "moonbase" in complaint(error)
+    assert "restaurant" in error
+
+
+def test_a_recording_is_not_overwritten_without_being_told(run, tmp_path):
+    (tmp_path / "there.mcap").write_bytes(b"precious")
+    status, _, error = run("simulate", "lonely", "--out", "there.mcap")
+    assert status == 1
+    assert "there.mcap" in complaint(error)
+    assert (tmp_path / "there.mcap").read_bytes() == b"precious"
+
+
+@pytest.mark.model
+def test_the_lonely_guest_s_raised_hand_is_found_by_the_demo(run, tmp_path, model_store):
+    status, output, _ = run("demo", "lonely", "--json")
+    assert status == 0
+    evaluation = json.loads(output)["evaluation"]
+    (episode,) = evaluation["episodes"]
+    assert evaluation["invented"] == []
+    assert episode["reported_after_frames"] <= 3
+    assert episode["position_error_m"] <= 0.3
+    assert (tmp_path / "demo/overview.png").exists()
+
+
+@pytest.mark.model
+def test_zero_sized_images_are_one_line_and_status_1(run, tmp_path, model_store):
+    from tracker.messages import encode
+    from tracker.messages.types import build, serialize
+
+    with RecordingWriter(tmp_path / "in.mcap") as writer:
+        good = CameraImage(10**9, "camera_link", np.zeros((48, 64, 3), np.uint8))
+        empty = build("sensor_msgs/msg/Image", encoding="bgr8")
+        writer.write("/image_raw", 10**9, serialize(empty))
+        writer.write("/image_raw", 10**9 + 1, encode(good))
+    status, _, error = run("replay", "in.mcap", "-p", "fixed_frame:=camera_link", "--out", "out")
+    assert status == 1
+    assert "/image_raw" in complaint(error)
+    assert (tmp_path / "out/output.mcap").stat().st_size > 0

@@ -1,0 +1,171 @@
+"""What would the robot have done? A recording through the very pipeline that runs on the robot.
+
+Reads any recording, writes `output.mcap`, `tracks.csv`, `summary.json`, `overview.png` and
+`debug.mp4`. Streams: memory does not grow with the recording.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tracker.camera import CameraModel
+from tracker.config import Config
+from tracker.containers import CameraImage, FrameResult, Scan, Truth
+from tracker.errors import RecordingError, TransformError
+from tracker.evaluation.episode_report import EpisodeReport
+from tracker.evaluation.episodes import EpisodeEvaluation
+from tracker.perception.detector import HandDetector
+from tracker.pipeline import Pipeline
+from tracker.problems import Problems
+from tracker.recording import Recording, Topics, open_recording
+from tracker.replay_outputs import ReplayOutputs
+from tracker.report.history import History
+from tracker.report.overview import draw_overview
+from tracker.report.summary import summarize, write_summary
+from tracker.transforms import StampedTransform
+
+#: Told what share of the recording is done, from 0 to 1, and how many images were processed.
+Progress = Callable[[float, int], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Replay:
+    """What came of a recording.
+
+    Attributes:
+        history: Everybody's tracks, raised hands and the room, for tables and pictures.
+        summary: The content of `summary.json`.
+        episodes: Reported against true raised hands; None where the recording holds no truth.
+        problems: What was wrong with the input, one line each; empty where nothing was.
+        files: What was written.
+    """
+
+    history: History
+    summary: dict[str, object]
+    episodes: EpisodeReport | None
+    problems: tuple[str, ...]
+    files: tuple[Path, ...]
+
+
+def replay(
+    source: str | Path,
+    out: str | Path,
+    config: Config | None = None,
+    *,
+    topics: Topics | None = None,
+    stamps: str = "header",
+    detector: HandDetector | None = None,
+    progress: Progress | None = None,
+) -> Replay:
+    """Run a recording through the pipeline and write everything that comes of it.
+
+    A recording that breaks off, or holds broken messages, is replayed as far as it goes; what was
+    wrong stands in `Replay.problems`, and everything written until then can be read.
+
+    Args:
+        source: rosbag2 folder, .mcap, .db3, ROS 1 .bag, video or folder of photos.
+        out: Folder for the outputs; files of an earlier replay there are replaced.
+        config: Every parameter.
+        topics: Where in the recording the data are.
+        stamps: "header" or "log": which of a message's times counts.
+        detector: Finds hands; by default MediaPipe's models.
+        progress: Told how far it is.
+
+    Raises:
+        RecordingError: The source cannot be opened or holds neither images nor scans, or the
+            outputs cannot be written.
+        ModelFileError: The hand models are not there.
+    """
+    config, out = config or Config(), Path(out)
+    problems = Problems()
+    history = History()
+    evaluation = EpisodeEvaluation()
+    has_truth, frames_seen = False, 0
+    with open_recording(source, topics or Topics(), with_truth=True, stamps=stamps) as recording:
+        if not recording.has_images:
+            if not recording.has_scans or recording.image_topics:
+                recording.require_images()
+            problems.remark("no images in the recording: nobody can be seen raising a hand")
+        pipeline = Pipeline(config, detector)
+        with ReplayOutputs(out, config) as outputs:
+
+            def take(image: CameraImage, result: FrameResult) -> None:
+                outputs.write(image, result)
+                history.write(result)
+                evaluation.add_result(result)
+                problems.note_frame(result)
+
+            try:
+                for log_ns, event in recording.events():
+                    if isinstance(event, Truth):
+                        evaluation.add_truth(event)
+                        has_truth = True
+                        continue
+                    frames_seen += isinstance(event, CameraImage)
+                    outputs.copy(log_ns, event)
+                    now_ns = _feed(pipeline, event, problems)
+                    if now_ns is not None:
+                        for image, result in pipeline.advance(now_ns):
+                            take(image, result)
+                    if progress is not None and isinstance(event, (CameraImage, Scan)):
+                        progress(recording.share(log_ns), history.frames_processed)
+            except RecordingError as error:  # breaks off: what came before it counts
+                problems.add("broken recording", str(error))
+            for image, result in pipeline.advance():
+                take(image, result)
+        _note_missing(pipeline, recording, history, problems, config)
+        for reason in recording.skipped_lines():
+            problems.add("skipped", reason)
+        remarks = (*recording.notes, *problems.remarks)
+    episodes = evaluation.report() if has_truth else None
+    summary = summarize(history, frames_seen=frames_seen, evaluation=episodes) | {
+        "source": str(source),
+        "problems": list(problems.lines()),
+        "remarks": list(remarks),
+    }
+    write_summary(summary, out / "summary.json")
+    draw_overview(history, out / "overview.png", episodes)
+    if progress is not None:
+        progress(1.0, history.frames_processed)
+    files = (*outputs.files, out / "summary.json", out / "overview.png")
+    return Replay(history, summary, episodes, problems.lines(), files)
+
+
+def _feed(pipeline: Pipeline, event: object, problems: Problems) -> int | None:
+    """Push one event into the pipeline; its stamp is the data's time now, if it has one."""
+    if isinstance(event, CameraImage):
+        pipeline.add_image(event)
+        return event.stamp_ns
+    if isinstance(event, Scan):
+        pipeline.add_scan(event)
+        return event.stamp_ns
+    if isinstance(event, StampedTransform):
+        try:
+            pipeline.add_transform(event)
+        except TransformError as error:
+            problems.add("unusable transform", str(error))
+        return None if event.is_static else event.stamp_ns
+    if isinstance(event, CameraModel):
+        pipeline.set_camera(event)
+    return None
+
+
+def _note_missing(
+    pipeline: Pipeline,
+    recording: Recording,
+    history: History,
+    problems: Problems,
+    config: Config,
+) -> None:
+    """A bag whose frames never connect gives no pose: a problem of the input."""
+    if not recording.is_bag or not history.frames_processed or len(history.camera_path):
+        return
+    heard = ", ".join(sorted(pipeline.transforms.frames)) or "none"
+    problems.add(
+        "missing transforms",
+        f"no transform from {config.camera_frame!r} to {config.fixed_frame!r} at any image's "
+        f"stamp, so nobody has a pose; frames heard of: {heard}. Set camera_frame and "
+        f"fixed_frame, or fixed_frame: {config.camera_frame} to track relative to the camera.",
+    )

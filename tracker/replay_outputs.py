@@ -1,0 +1,87 @@
+"""What does a replay leave behind? A recording, a table and a video, written as it goes."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+
+from tracker.config import NODE_NAME, Config
+from tracker.containers import CameraImage, FrameResult, ImageArray, Scan
+from tracker.errors import RecordingError
+from tracker.messages import encode_markers
+from tracker.perception.drawing import draw_debug_image
+from tracker.recording import RecordingWriter
+from tracker.report.birdseye import draw_birdseye
+from tracker.report.debug_video import DebugVideo, side_by_side
+from tracker.report.tracks_csv import TracksCsv
+from tracker.transforms import StampedTransform
+
+
+class ReplayOutputs:
+    """The files that grow with a recording; a context manager.
+
+    Args:
+        out: Folder; made where it is not there.
+        config: The parameters in force.
+
+    Raises:
+        RecordingError: The folder or a file cannot be written.
+    """
+
+    def __init__(self, out: Path, config: Config) -> None:
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise RecordingError(f"{out}: cannot be made ({error.strerror}).") from error
+        self.files = (out / "output.mcap", out / "tracks.csv", out / "debug.mp4")
+        self._config = config
+        self._stack = ExitStack()
+        enter = self._stack.enter_context
+        self._recording = enter(
+            RecordingWriter(self.files[0], fixed_frame=config.fixed_frame, overwrite=True)
+        )
+        self._table = enter(TracksCsv(self.files[1]))
+        self._video = enter(DebugVideo(self.files[2], config.processing_rate))
+
+    def __enter__(self) -> ReplayOutputs:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._stack.__exit__(kind, error, traceback)
+
+    def copy(self, log_ns: int, event: object) -> None:
+        """Pass scans and transforms on, so that the output can be looked at on its own."""
+        if isinstance(event, Scan):
+            self._recording.write("/scan", log_ns, event)
+        elif isinstance(event, StampedTransform):
+            topic = "/tf_static" if event.is_static else "/tf"
+            self._recording.write(topic, log_ns, event)
+
+    def write(self, image: CameraImage, result: FrameResult) -> None:
+        """Publish one processed image as the node would: the pose before the Bool."""
+        put, stamp_ns, tracks = self._recording.write, result.stamp_ns, result.tracks
+        if result.customer_pose is not None:
+            put("/customer_pose", stamp_ns, result.customer_pose)
+        if result.approach_pose is not None:
+            put(f"/{NODE_NAME}/approach_pose", stamp_ns, result.approach_pose)
+        put("/hand_raised", stamp_ns, result.hand_raised)
+        debug = draw_debug_image(image, result.hands, tracks, self._config)
+        put("/hand_detection_debug", stamp_ns, CameraImage(stamp_ns, image.frame_id, debug))
+        confirmed = tracks[tracks.confirmed]
+        put(f"/{NODE_NAME}/tracks", stamp_ns, confirmed)
+        frame_id = self._config.fixed_frame
+        markers = encode_markers(confirmed, frame_id=frame_id, approach=result.approach_pose)
+        put(f"/{NODE_NAME}/markers", stamp_ns, markers)
+        self._table.write(result)
+        self._video.write(self._side_by_side(image, result))
+
+    def _side_by_side(self, image: CameraImage, result: FrameResult) -> ImageArray:
+        full_size = self._config.replace(downscale_factor=1)
+        picture = draw_debug_image(image, result.hands, result.tracks, full_size)
+        return side_by_side(picture, draw_birdseye(result))
