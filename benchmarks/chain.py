@@ -1,0 +1,104 @@
+"""Does the whole chain keep up with 10 Hz? Median and tail of every stage, on the demo's scene.
+
+    python benchmarks/chain.py [--scene restaurant] [--seconds 20]
+
+Per processed image: find hands, range and track, draw and write the outputs; then the share of one
+period at the configured rate. Run it on an idle machine; other work shows in the tail first.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from tracker import Config, Pipeline
+from tracker.camera import CameraModel
+from tracker.containers import CameraImage, Hands, Scan
+from tracker.perception import HandFinder
+from tracker.perception.models import ModelStore, ensure_models
+from tracker.replay_outputs import ReplayOutputs
+from tracker.simulation import load_scene, simulate
+from tracker.transforms import StampedTransform
+
+
+class TimedFinder(HandFinder):
+    """The hand finder, with the time each image took."""
+
+    def __init__(self, config: Config) -> None:
+        super().__init__(config)
+        self.seconds: list[float] = []
+
+    def find(self, image: CameraImage) -> Hands:
+        """As the finder does, and note the time."""
+        begin = time.perf_counter()
+        hands = super().find(image)
+        self.seconds.append(time.perf_counter() - begin)
+        return hands
+
+
+def run(config: Config, scene_name: str, seconds: float) -> dict[str, np.ndarray]:
+    """Milliseconds of each stage for each processed image."""
+    finder = TimedFinder(config)
+    pipeline = Pipeline(config, finder)
+    whole, outputs_s = [], []
+    with tempfile.TemporaryDirectory() as folder:
+        with ReplayOutputs(Path(folder), config) as outputs:
+            first_ns = None
+            for log_ns, event in simulate(load_scene(scene_name), seed=1):
+                first_ns = first_ns or log_ns
+                if log_ns - first_ns > seconds * 1e9:
+                    break
+                if isinstance(event, StampedTransform):
+                    pipeline.add_transform(event)
+                elif isinstance(event, Scan):
+                    pipeline.add_scan(event)
+                elif isinstance(event, CameraModel):
+                    pipeline.set_camera(event)
+                elif isinstance(event, CameraImage):
+                    pipeline.add_image(event)
+                begin = time.perf_counter()
+                for image, result in pipeline.advance(log_ns):
+                    whole.append(time.perf_counter() - begin)
+                    begin = time.perf_counter()
+                    outputs.write(image, result)
+                    outputs_s.append(time.perf_counter() - begin)
+                    begin = time.perf_counter()
+    find_ms, whole_ms = 1e3 * np.array(finder.seconds), 1e3 * np.array(whole)
+    return {
+        "find hands": find_ms,
+        "range and track": whole_ms - find_ms,
+        "draw and write": 1e3 * np.array(outputs_s),
+        "whole chain": whole_ms + 1e3 * np.array(outputs_s),
+    }
+
+
+def main() -> None:
+    """Print a table for each model complexity."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scene", default="restaurant")
+    parser.add_argument("--seconds", type=float, default=20.0)
+    words = parser.parse_args()
+    ensure_models(ModelStore())
+    for complexity in (0, 1):
+        config = Config(model_complexity=complexity)
+        period_ms = 1e3 / config.processing_rate
+        stages = run(config, words.scene, words.seconds)
+        count = len(stages["whole chain"])
+        title = f"{words.scene}, 640x480, complexity {complexity}, {count} images"
+        table = Table("stage", "median", "p99", f"median of {period_ms:.0f} ms", title=title)
+        for name, times_ms in stages.items():
+            median = np.median(times_ms)
+            tail = np.percentile(times_ms, 99)
+            share = f"{100 * median / period_ms:.0f} %"
+            table.add_row(name, f"{median:.1f} ms", f"{tail:.1f} ms", share)
+        Console().print(table)
+
+
+if __name__ == "__main__":
+    main()
