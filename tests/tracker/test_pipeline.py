@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from tracker import CameraImage, Config, Hands, Pipeline, Scan
 from tracker.camera import CameraModel
@@ -199,3 +200,31 @@ def test_changed_parameters_keep_the_tracks(located):
     result = play(located, 1, START_NS + 4 * PERIOD_NS)[0]
     assert result.tracks.id.tolist() == [1]
     assert result.approach_pose.position_m[0] == pytest.approx(0.5, abs=0.15)
+
+
+def test_algorithm_2_the_scan_nearest_to_the_image_is_the_one_that_counts(located):
+    for offset, x in [(-2, 3.0), (-1, 2.5), (0, 2.0)]:
+        located.add_scan(person_scan(START_NS + offset * PERIOD_NS, x))
+    result = located.process(image_at(START_NS + PERIOD_NS // 10))
+    assert result.scan.stamp_ns == START_NS
+
+
+@pytest.mark.parametrize(("convention", "side"), [("spec", 1.0), ("rep103", -1.0)])
+def test_algorithm_4_gives_the_specification_s_pose_of_a_pixel(convention, side):
+    # Pixel 540 of a 640 wide image, fx 460, everything 3 m away: arctan(220 / 460) = 25.5600
+    # degrees, 3 cos = 2.70640 m, 3 sin = 1.29437 m. The original counts right as positive.
+    config = Config(ranging="spec", bearing_convention=convention)
+    pipeline = Pipeline(config, SeenHands((540, 100)))
+    pipeline.add_transform(static("map", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+
+    def round_room(stamp_ns):
+        ranges = np.full(720, 3.0)
+        return Scan(stamp_ns, "laser", -np.pi, np.radians(0.5), 0.05, 12.0, ranges)
+
+    pose = play(pipeline, 3, scan=round_room)[-1].customer_pose
+    assert pose.position_m == pytest.approx((2.70640, side * 1.29437, 0.0), abs=1e-4)
+    yaw = np.radians(side * 25.5600 + 180.0)
+    expected = Rotation.from_euler("z", yaw)
+    turned = expected.inv() * Rotation.from_quat(pose.quaternion_xyzw)
+    assert turned.magnitude() == pytest.approx(0.0, abs=1e-4)
