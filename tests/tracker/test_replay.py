@@ -226,3 +226,13 @@ def test_real_scan_recordings_replay_without_error(tmp_path, name):
     if not source.exists():
         pytest.skip(f"{source.name} is not beside this checkout")
     assert replay(source, tmp_path, detector=HandAhead()).problems == ()
+
+
+@pytest.mark.model
+def test_real_photos_replay_without_error(tmp_path, model_store):
+    photos = DATA / "photos"
+    if not photos.exists():
+        pytest.skip("the photos are not beside this checkout")
+    result = replay(photos, tmp_path, Config(model_complexity=1))
+    assert result.problems == ()
+    assert result.history.frames_processed == len(list(photos.iterdir()))
