@@ -192,20 +192,78 @@ class Config(BaseModel):
     )  # fmt: skip
 
     # Tracking.
+    motion: Literal["imm", "cv"] = _parameter(
+        "imm", "How people move: imm (they stand or walk, and change over) or cv (nearly constant "
+        "velocity).",
+        group="tracking", live=True,
+    )  # fmt: skip
+    measurement_model: Literal["polar", "converted"] = _parameter(
+        "polar", "Bearing and range are compared where they were taken (polar), or as points of "
+        "the fixed frame (converted).",
+        group="tracking", live=True,
+    )  # fmt: skip
+    association: Literal["hungarian", "jpda"] = _parameter(
+        "hungarian", "Whose measurement is it? hungarian: the most likely one-to-one assignment; "
+        "jpda: every measurement in the gate, by its probability.",
+        group="tracking", live=True,
+    )  # fmt: skip
     acceleration_density: float = _parameter(
-        0.3, "Process noise: power spectral density of people's acceleration.",
+        0.3, "Process noise: power spectral density of the acceleration of people who walk.",
         unit="m^2/s^3", group="tracking", live=True, gt=0.0, le=100.0,
+    )  # fmt: skip
+    stand_speed_std_mps: float = _parameter(
+        0.1, "`motion: imm`: how fast people sway who stand, per axis.",
+        unit="m/s", group="tracking", live=True, gt=0.0, le=2.0,
+    )  # fmt: skip
+    stand_duration_s: float = _parameter(
+        10.0, "`motion: imm`: how long people stand, on average ...",
+        unit="s", group="tracking", live=True, gt=0.1, le=3600.0,
+    )  # fmt: skip
+    walk_duration_s: float = _parameter(
+        5.0, "... and how long they walk.",
+        unit="s", group="tracking", live=True, gt=0.1, le=3600.0,
     )  # fmt: skip
     initial_speed_std_mps: float = _parameter(
         0.5, "Spread of the speed of a new customer, per axis.",
         unit="m/s", group="tracking", live=True, gt=0.0, le=10.0,
     )  # fmt: skip
+    outlier_dof: float = _parameter(
+        4.0, "Ranges are heavy-tailed: degrees of freedom of their Student-t noise; 0 takes them "
+        "for Gaussian.",
+        group="tracking", live=True, ge=0.0, le=1000.0,
+    )  # fmt: skip
+    hand_bias_duration_s: float = _parameter(
+        0.0, "A hand stands to the same side of the body for so long: without a range, the errors "
+        "of its bearing are alike from frame to frame. 0 takes them for independent.",
+        unit="s", group="tracking", live=True, ge=0.0, le=60.0,
+    )  # fmt: skip
     gate_probability: float = _parameter(
         0.99, "Share of true measurements that the gate lets through.",
         group="tracking", live=True, gt=0.5, lt=1.0,
     )  # fmt: skip
+    innovation_floor_m: float = _parameter(
+        0.05, "No gate is narrower than that of this standard deviation, however sure the filter.",
+        unit="m", group="tracking", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+    detection_probability: float = _parameter(
+        0.9, "Chance that a raised hand, or a person in the scan, is detected in a frame.",
+        group="tracking", live=True, ge=0.05, le=0.99,
+    )  # fmt: skip
+    newcomer_density: float = _parameter(
+        0.02, "Measurements of nobody known, false ones and new customers', per frame and area.",
+        unit="1/m^2", group="tracking", live=True, gt=0.0, le=10.0,
+    )  # fmt: skip
+    confirmation: Literal["m_of_n", "existence"] = _parameter(
+        "m_of_n", "What makes a customer: m_of_n (raised-hand detections in a window of frames) "
+        "or existence (its probability).",
+        group="tracking", live=True,
+    )  # fmt: skip
+    confirm_existence: float = _parameter(
+        0.9, "`confirmation: existence`: the probability that makes a customer.",
+        group="tracking", live=True, ge=0.1, le=0.999,
+    )  # fmt: skip
     confirm_detections: int = _parameter(
-        2, "Raised-hand detections that make a customer ...",
+        2, "`confirmation: m_of_n`: raised-hand detections that make a customer ...",
         unit="frames", group="tracking", live=True, ge=1, le=100,
     )  # fmt: skip
     confirm_window: int = _parameter(
@@ -213,8 +271,13 @@ class Config(BaseModel):
         unit="frames", group="tracking", live=True, ge=1, le=100,
     )  # fmt: skip
     delete_after_s: float = _parameter(
-        3.0, "A customer whom neither hand nor scan has shown for so long is gone.",
+        3.0, "A customer whom neither hand nor scan has shown for so long, though in view, is "
+        "gone.",
         unit="s", group="tracking", live=True, gt=0.0, le=3600.0,
+    )  # fmt: skip
+    mature_detections: int = _parameter(
+        5, "Customers with fewer raised-hand detections are gone sooner, in proportion.",
+        unit="frames", group="tracking", live=True, ge=1, le=1000,
     )  # fmt: skip
     forget_after_s: float = _parameter(
         60.0, "A customer whose hand has not been up for so long is forgotten, seen or not.",

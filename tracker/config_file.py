@@ -70,5 +70,15 @@ def _written(name: str) -> str:
     return json.dumps(Config.model_fields[name].default)  # what JSON writes, YAML reads alike
 
 
+def markdown_page() -> str:
+    """The page of the documentation that lists every parameter."""
+    return (
+        "# Parameters\n\nWritten from `tracker/config.py` by `make config`. Live: may change "
+        f"while the node runs.\n\n{markdown_table()}"
+    )
+
+
 if __name__ == "__main__":
-    Path(sys.argv[1]).write_text(default_yaml(), encoding="utf-8")
+    for name in sys.argv[1:]:
+        content = markdown_page() if name.endswith(".md") else default_yaml()
+        Path(name).write_text(content, encoding="utf-8")

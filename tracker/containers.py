@@ -192,6 +192,7 @@ class Measurements:
         person: Shape (M,), int64: claims that share a non-negative number come from the same body
             (the same scan segment); -1 where nobody knows.
         hand: Shape (M,), int64: row of the image's `Hands`, or -1.
+        sensor_pose_covariance: Shape (M, 3, 3), of `sensor_pose`; None means zeros (well known).
     """
 
     values: FloatArray
@@ -201,14 +202,19 @@ class Measurements:
     raised: BoolArray
     person: IntArray
     hand: IntArray
+    sensor_pose_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
 
     def __post_init__(self) -> None:
-        for name in ("values", "covariance", "sensor_pose"):
+        if self.sensor_pose_covariance is None:
+            zeros = np.zeros((len(self.values), 3, 3))
+            object.__setattr__(self, "sensor_pose_covariance", zeros)
+        for name in ("values", "covariance", "sensor_pose", "sensor_pose_covariance"):
             _freeze(self, name, getattr(self, name), np.float64)
         for name in ("model", "person", "hand"):
             _freeze(self, name, getattr(self, name), np.int64)
         _freeze(self, "raised", self.raised, np.bool_)
-        _check_rows(self, len(self.values), values=(2,), covariance=(2, 2), sensor_pose=(3,))
+        tails = {"values": (2,), "covariance": (2, 2), "sensor_pose": (3,)}
+        _check_rows(self, len(self.values), **tails, sensor_pose_covariance=(3, 3))
 
     def __len__(self) -> int:
         return len(self.values)

@@ -6,13 +6,18 @@ import pytest
 import yaml
 
 from tracker.config import Config
-from tracker.config_file import default_yaml, markdown_table
+from tracker.config_file import default_yaml, markdown_page, markdown_table
 
 COMMITTED = Path(__file__).parents[2] / "config/hand_detector.yaml"
 
 
 def test_the_committed_file_is_fresh():
     assert COMMITTED.read_text(encoding="utf-8") == default_yaml(), "stale: run `make config`"
+
+
+def test_the_committed_page_is_fresh():
+    page = COMMITTED.parents[1] / "docs/parameters.md"
+    assert page.read_text(encoding="utf-8") == markdown_page(), "stale: run `make config`"
 
 
 def test_the_committed_file_loads_as_the_defaults():

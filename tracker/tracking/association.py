@@ -1,77 +1,99 @@
-"""Which measurement belongs to which track? Gate, then the best one-to-one assignment."""
+"""Which measurement belongs to which track? The most likely one-to-one assignment.
+
+Every hypothesis has its likelihood, also that a track was missed and that a measurement comes from
+nobody known; so all of them compare. The log-odds of a pair say how much likelier it is than its
+track missed and its measurement somebody else's:
+
+    log( Pd N(y; 0, S) ) - log( (1 - Pd) lambda ).
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
-from scipy.stats import chi2
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
-from tracker.containers import BoolArray, FloatArray, IntArray, Measurements
+from tracker.containers import FloatArray, IntArray
+from tracker.tracking.gating import Pairs
 
-#: A missed detection costs as much as a measurement at the edge of the gate whose track knew its
-#: place so badly that the innovation spreads e^4 times wider than the sensor's noise. Finite, so
-#: that hypotheses with and without it stay comparable.
-_MISSED_LOG_SPREAD = 8.0
-
-
-def squared_distances(innovation: FloatArray, spread: FloatArray) -> FloatArray:
-    """Squared Mahalanobis distances y' inv(S) y, shape (N, M), of innovations (N, M, 2)."""
-    solved = np.linalg.solve(spread, innovation[..., None])[..., 0]
-    return np.asarray(np.einsum("nmi,nmi->nm", innovation, solved))
+#: Up to so many tracks or pairs, one dense assignment costs less than looking for clusters.
+_DENSE_UP_TO = 40
 
 
-def gate(
-    distances: FloatArray, measurements: Measurements, gate_probability: float
-) -> tuple[BoolArray, FloatArray]:
-    """Mark the pairs close enough to be worth associating.
-
-    A pair passes when its squared distance does not exceed the chi-square quantile of
-    `gate_probability`, with one degree of freedom for a bearing alone and two otherwise.
+def log_odds(pairs: Pairs, weight: FloatArray, detection_probability: FloatArray) -> FloatArray:
+    """Log-odds of each pair against "missed, and somebody else's", shape (P,).
 
     Args:
-        distances: Shape (N, M), squared Mahalanobis distances.
-        measurements: The M claims.
-        gate_probability: Share of true measurements to keep.
-
-    Returns:
-        Mask of shape (N, M) and the limit of each measurement, shape (M,).
+        pairs: From `find_pairs`.
+        weight: Shape (K, N): probability of each mode of motion.
+        detection_probability: Shape (N,), in (0, 1): of each track, in this frame.
     """
-    freedom = np.where(np.isnan(measurements.values[:, 1]), 1, 2)
-    limit = np.asarray(chi2.ppf(gate_probability, [1, 2]))[freedom - 1]
-    return distances <= limit, limit
+    likelihood = pairs.log_likelihood[0]
+    if len(weight) == 2:
+        joint = pairs.log_likelihood + np.log(weight[:, pairs.track])
+        likelihood = np.logaddexp(joint[0], joint[1])
+    odds = np.log(detection_probability / (1.0 - detection_probability))
+    return np.asarray(likelihood + odds[pairs.track] - pairs.log_newcomer)
 
 
-def associate(
-    innovation: FloatArray,
-    spread: FloatArray,
-    measurements: Measurements,
-    gate_probability: float,
-) -> IntArray:
-    """Assign at most one measurement to each track, at the highest joint likelihood.
+def assign(pairs: Pairs, odds: FloatArray, tracks: int) -> IntArray:
+    """Give each track at most one measurement, and back, at the highest sum of log-odds.
 
-    The cost of a pair is y' inv(S) y + log(|S| / |R|): twice its negative log-likelihood, in units
-    in which bearings, ranges and positions compare. Leaving a track without measurement costs the
-    gate's limit and a constant more (Hungarian algorithm, scipy's `linear_sum_assignment`).
+    The Hungarian algorithm (scipy's `linear_sum_assignment`); among many tracks, pairs without a
+    rival are settled first, and the rest goes cluster by cluster.
 
     Args:
-        innovation: Shape (N, M, 2), from `filter.innovations`.
-        spread: Shape (N, M, 2, 2), S of each pair.
-        measurements: The M claims.
-        gate_probability: Share of true measurements that the gate keeps.
+        pairs: P pairs.
+        odds: Shape (P,), log-odds; a pair below 0 is not worth taking.
+        tracks: N.
 
     Returns:
-        Shape (N,): row of each track's measurement, or -1.
+        Shape (N,): row of each track's pair, or -1.
     """
-    tracks, claims = innovation.shape[:2]
     chosen = np.full(tracks, -1, dtype=np.int64)
-    if tracks == 0 or claims == 0:
+    rows = np.flatnonzero(odds > 0.0)
+    if len(rows) == 0:
         return chosen
-    distances = squared_distances(innovation, spread)
-    inside, limit = gate(distances, measurements, gate_probability)
-    noise = np.linalg.slogdet(measurements.covariance)[1]
-    cost = distances + np.linalg.slogdet(spread)[1] - noise
-    gain = np.where(inside, cost - (limit + _MISSED_LOG_SPREAD), 0.0)
-    rows, columns = linear_sum_assignment(np.minimum(gain, 0.0))
-    taken = gain[rows, columns] < 0.0
-    chosen[rows[taken]] = columns[taken]
+    track, claim = pairs.track[rows], pairs.claim[rows]
+    claims = int(claim.max()) + 1
+    if max(tracks, claims) <= _DENSE_UP_TO:
+        _assign_densely(chosen, rows, track, claim, odds, (tracks, claims))
+        return chosen
+    alone = (np.bincount(track)[track] == 1) & (np.bincount(claim)[claim] == 1)
+    chosen[track[alone]] = rows[alone]
+    rows, track, claim = rows[~alone], track[~alone], claim[~alone]
+    for part in _clusters(track, claim, tracks, claims):
+        some_tracks, row = np.unique(track[part], return_inverse=True)
+        some_claims, column = np.unique(claim[part], return_inverse=True)
+        own = np.full(len(some_tracks), -1, dtype=np.int64)
+        size = (len(some_tracks), len(some_claims))
+        _assign_densely(own, rows[part], row, column, odds, size)
+        chosen[some_tracks] = own
     return chosen
+
+
+def _assign_densely(
+    chosen: IntArray,
+    rows: IntArray,
+    track: IntArray,
+    claim: IntArray,
+    odds: FloatArray,
+    size: tuple[int, int],
+) -> None:
+    gain = np.zeros(size)
+    pair = np.full(size, -1, dtype=np.int64)
+    gain[track, claim], pair[track, claim] = odds[rows], rows
+    row, column = linear_sum_assignment(gain, maximize=True)
+    chosen[row] = pair[row, column]
+
+
+def _clusters(track: IntArray, claim: IntArray, tracks: int, claims: int) -> list[IntArray]:
+    """Which pairs hang together through a track or a measurement, as rows of each cluster."""
+    if len(track) <= _DENSE_UP_TO:
+        return [np.arange(len(track))] if len(track) else []
+    nodes = tracks + claims
+    graph = coo_array((np.ones(len(track)), (track, tracks + claim)), shape=(nodes, nodes))
+    cluster = connected_components(graph, directed=False)[1][track]
+    order = np.argsort(cluster, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(cluster[order])) + 1)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray, Tracks
+from tracker.tracking.modes import Belief
 from tracker.tracking.streaks import Streaks
 
 
@@ -17,91 +18,94 @@ class People:
 
     Attributes:
         id: Shape (N,), int64.
-        mean: Shape (N, 4): x_m, y_m, vx_mps, vy_mps in the fixed frame.
-        covariance: Shape (N, 4, 4).
+        belief: Where they are, in each mode of motion.
         existence: Shape (N,): probability that somebody is there.
         confirmed: Shape (N,), bool.
         recent: Shape (N, W), bool: raised-hand detections of the last W frames, newest first.
+        detections: Shape (N,): raised-hand detections in all.
         streaks: The raised-hand counters.
         raised_since_ns: Shape (N,): when the hand last began to count as raised; -1 never.
         born_ns: Shape (N,): stamp of the first measurement.
         seen_ns: Shape (N,): stamp of the last measurement of any kind.
         called_ns: Shape (N,): stamp of the last raised-hand measurement.
+        missing_s: Shape (N,): time in which nothing showed them although they were in view.
         hand: Shape (N,): row of this frame's `Hands`, or -1.
     """
 
     id: IntArray
-    mean: FloatArray
-    covariance: FloatArray
+    belief: Belief
     existence: FloatArray
     confirmed: BoolArray
     recent: BoolArray
+    detections: IntArray
     streaks: Streaks
     raised_since_ns: IntArray
     born_ns: IntArray
     seen_ns: IntArray
     called_ns: IntArray
+    missing_s: FloatArray
     hand: IntArray
 
     def __len__(self) -> int:
         return len(self.id)
 
     def __getitem__(self, rows: Any) -> People:
-        return People(*(getattr(self, item.name)[rows] for item in fields(People)))
+        return People(*(getattr(self, name)[rows] for name in _NAMES))
 
     @staticmethod
     def begin(
         ids: IntArray,
-        mean: FloatArray,
-        covariance: FloatArray,
+        belief: Belief,
         stamp_ns: int,
         window: int,
-        existence: float,
+        existence: FloatArray,
     ) -> People:
         """People who have just been seen for the first time; nothing is counted yet."""
         count = len(ids)
         now = np.full(count, stamp_ns, dtype=np.int64)
         return People(
             id=ids,
-            mean=mean,
-            covariance=covariance,
-            existence=np.full(count, existence),
+            belief=belief,
+            existence=existence,
             confirmed=np.zeros(count, dtype=bool),
             recent=np.zeros((count, window), dtype=bool),
+            detections=np.zeros(count, dtype=np.int64),
             streaks=Streaks.begin(count),
             raised_since_ns=np.full(count, -1, dtype=np.int64),
             born_ns=now,
             seen_ns=now,
             called_ns=now,
+            missing_s=np.zeros(count),
             hand=np.full(count, -1, dtype=np.int64),
         )
 
     @staticmethod
-    def nobody(window: int) -> People:
+    def nobody(window: int, modes: int) -> People:
         """No track at all."""
-        ids = np.zeros(0, dtype=np.int64)
-        return People.begin(ids, np.zeros((0, 4)), np.zeros((0, 4, 4)), 0, window, 0.0)
+        belief = Belief.begin(np.zeros((0, 4)), np.zeros((0, 4, 4)), modes, 0.0)
+        return People.begin(np.zeros(0, dtype=np.int64), belief, 0, window, np.zeros(0))
 
     def append(self, other: People) -> People:
         """Rows of both, in order."""
-        joined = {
-            item.name: np.concatenate([getattr(self, item.name), getattr(other, item.name)])
-            for item in fields(People)
-            if item.name != "streaks"
-        }
-        return People(streaks=self.streaks.append(other.streaks), **joined)
+        joined: dict[str, Any] = {}
+        for name in _NAMES:
+            mine, theirs = getattr(self, name), getattr(other, name)
+            is_array = isinstance(mine, np.ndarray)
+            joined[name] = np.concatenate([mine, theirs]) if is_array else mine.append(theirs)
+        return People(**joined)
 
     def replace(self, **changes: Any) -> People:
         """The same people with some arrays changed."""
         return replace(self, **changes)
 
-    def as_tracks(self, stamp_ns: int, selected_id: int | None = None) -> Tracks:
+    def as_tracks(self, stamp_ns: int, selected_id: int | None) -> Tracks:
         """What the outside sees of them."""
+        mean, covariance = self.belief.merged()
         return Tracks(
             stamp_ns=stamp_ns,
             id=self.id,
-            mean=self.mean,
-            covariance=self.covariance,
+            mean=mean,
+            covariance=covariance,
             existence=self.existence,
             confirmed=self.confirmed,
             raised=self.streaks.raised,
@@ -111,3 +115,6 @@ class People:
             hand=self.hand,
             selected_id=selected_id,
         )
+
+
+_NAMES = tuple(item.name for item in fields(People))

@@ -6,31 +6,32 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tracker.config import Config
-from tracker.containers import (
-    BoolArray,
-    FloatArray,
-    IntArray,
-    MeasurementModel,
-    Measurements,
-    Tracks,
-    check_stamp,
-)
-from tracker.tracking.association import associate
-from tracker.tracking.filter import initial_state, innovations, update
+from tracker.containers import FloatArray, IntArray, Measurements, Tracks, check_stamp
+from tracker.tracking.admission import is_close, once_per_person, usable, with_hand_bias
+from tracker.tracking.association import assign, log_odds
+from tracker.tracking.converted import convert
+from tracker.tracking.filter import initial_state
+from tracker.tracking.gating import find_pairs
+from tracker.tracking.joint_probability import marginals
 from tracker.tracking.life_cycle import (
     BIRTH_EXISTENCE,
+    believe,
     count_detections,
-    fade_existence,
+    fade,
     still_there,
 )
-from tracker.tracking.motion import predict
+from tracker.tracking.modes import Belief, predict_modes
+from tracker.tracking.motion import motion_over
 from tracker.tracking.people import People
+from tracker.tracking.posterior import update_assigned, update_jointly
 from tracker.tracking.selection import Selector
+from tracker.tracking.twins import merge_twins
+from tracker.tracking.view import View, visibility
 
-#: Farther than this from the fixed frame's origin there is no person, and less or more than these
-#: variances no sensor claims; beyond them squares overflow.
-_ABSURD_M = 1e6
-_VARIANCE_MIN, _VARIANCE_MAX = 1e-12, 1e9
+#: Of a raised hand, the chance that one counts whose owner had it down in the last frame (guess).
+_RAISES_AGAIN = 0.3
+#: Nobody is ever certain to be detected, or certain not to be.
+_DETECTION_MIN = 0.02
 
 
 class PersonTracker:
@@ -47,7 +48,7 @@ class PersonTracker:
         self._config = config or Config()
         self._next_id = 1
         self._stamp_ns: int | None = None
-        self._people = People.nobody(self._config.confirm_window)
+        self._people = self._nobody()
         self.selector = Selector(self._config)
 
     @property
@@ -57,11 +58,14 @@ class PersonTracker:
 
     @config.setter
     def config(self, config: Config) -> None:
+        people = self._people
         if config.confirm_window != self._config.confirm_window:
-            held = self._people.recent[:, : config.confirm_window]
+            held = people.recent[:, : config.confirm_window]
             recent = np.zeros((len(held), config.confirm_window), dtype=bool)
             recent[:, : held.shape[1]] = held
-            self._people = self._people.replace(recent=recent)
+            people = people.replace(recent=recent)
+        belief = people.belief.with_modes(_modes(config), config.stand_speed_std_mps)
+        self._people = people.replace(belief=belief)
         self._config = self.selector.config = config
 
     @property
@@ -71,12 +75,17 @@ class PersonTracker:
 
     def reset(self) -> None:
         """Forget everybody; identities go on counting."""
-        self._people = People.nobody(self._config.confirm_window)
+        self._people = self._nobody()
         self._stamp_ns = None
         self.selector.reset()
 
     def step(
-        self, stamp_ns: int, measurements: Measurements, robot_xy_m: ArrayLike = (0.0, 0.0)
+        self,
+        stamp_ns: int,
+        measurements: Measurements,
+        robot_xy_m: ArrayLike = (0.0, 0.0),
+        *,
+        view: View | None = None,
     ) -> Tracks:
         """Take in everything that was measured at one instant.
 
@@ -87,6 +96,7 @@ class PersonTracker:
             stamp_ns: Sensor time of the measurements.
             measurements: In the fixed frame; may be empty.
             robot_xy_m: Shape (2,): where the robot is, for `selection: nearest`.
+            view: What the sensors could see; None means everybody.
 
         Returns:
             Everybody, tentative ones included (`confirmed` tells), with the selected customer.
@@ -97,122 +107,121 @@ class PersonTracker:
         check_stamp(stamp_ns)
         if self._stamp_ns is not None and stamp_ns < self._stamp_ns:
             self.reset()
-        people = self._predict(stamp_ns)
-        measurements = measurements[_usable(measurements)]
+        dt_s = 0.0 if self._stamp_ns is None else (stamp_ns - self._stamp_ns) / 1e9
+        # Beyond the longest memory everybody is gone anyway; a day's gap must not overflow.
+        dt_s = min(dt_s, 10.0 * max(self._config.delete_after_s, self._config.forget_after_s))
+        raised, others = self._admit(measurements, dt_s)
 
-        raised = _once_per_person(measurements[measurements.raised], self._config)
-        people, called_by = self._update(people, raised)
-        others = measurements[~measurements.raised]
-        people, shown_by = self._update(people, others)
-        is_called = called_by >= 0
-        hand = np.where(is_called, _hands_of(raised, called_by), _hands_of(others, shown_by))
-        people = people.replace(hand=hand)
+        people, visible = self._predict(dt_s, view)
+        hand_chance = np.where(people.streaks.missed == 0, 1.0, _RAISES_AGAIN)
+        belief, existence, called_by = self._update(
+            people.belief, people.existence, raised, visible * hand_chance
+        )
+        belief, existence, shown_by = self._update(belief, existence, others, visible)
+        is_called, is_shown = called_by >= 0, shown_by >= 0
+        is_seen = is_called | is_shown
+        hand = np.full(len(people), -1, dtype=np.int64)
+        hand[is_shown] = others.hand[shown_by[is_shown]]
+        hand[is_called] = raised.hand[called_by[is_called]]
 
-        newcomers = self._newcomers(people, is_called, raised, called_by, stamp_ns)
-        people = people.append(newcomers)
-        is_called = np.append(is_called, np.ones(len(newcomers), dtype=bool))
-        is_seen = is_called | np.append(shown_by >= 0, np.ones(len(newcomers), dtype=bool))
-        people = count_detections(people, is_called, is_seen, stamp_ns, self._config)
-        people = people[still_there(people, stamp_ns, self._config)]
+        people = count_detections(
+            people,
+            is_called,
+            is_seen,
+            stamp_ns,
+            self._config,
+            belief=belief,
+            existence=existence,
+            hand=hand,
+        )
+        people = merge_twins(people, is_seen, self._config)
+        if np.count_nonzero(is_called) < len(raised):
+            called_xy = belief.merged()[0][is_called, :2]
+            people = people.append(self._newcomers(raised, called_by, called_xy, stamp_ns))
+        keep = still_there(people, stamp_ns, self._config)
+        if not keep.all():
+            people = people[keep]
 
         self._people, self._stamp_ns = people, stamp_ns
-        tracks = people.as_tracks(stamp_ns)
-        chosen = self.selector.choose(tracks, np.asarray(robot_xy_m, dtype=np.float64))
-        return people.as_tracks(stamp_ns, selected_id=chosen)
+        robot_xy = np.asarray(robot_xy_m, dtype=np.float64)
+        return people.as_tracks(stamp_ns, self.selector.choose(people, stamp_ns, robot_xy))
 
-    def _predict(self, stamp_ns: int) -> People:
+    def _nobody(self) -> People:
+        return People.nobody(self._config.confirm_window, _modes(self._config))
+
+    def _admit(self, measurements: Measurements, dt_s: float) -> tuple[Measurements, Measurements]:
+        """Raised hands, one per person, and everything else."""
+        sane = usable(measurements)
+        if not sane.all():
+            measurements = measurements[sane]
+        if self._config.measurement_model == "converted":
+            measurements = convert(measurements)
+        raised, others = measurements, _NOTHING
+        if not measurements.raised.all():
+            raised, others = measurements[measurements.raised], measurements[~measurements.raised]
+        raised = once_per_person(raised, self._config)
+        return with_hand_bias(raised, dt_s, self._config), others
+
+    def _predict(self, dt_s: float, view: View | None) -> tuple[People, FloatArray]:
         people = self._people
-        if self._stamp_ns is None or len(people) == 0:
-            return people
-        dt_s = (stamp_ns - self._stamp_ns) / 1e9
-        # Beyond the longest memory everybody is gone anyway; a day's gap must not overflow.
-        dt_s = min(dt_s, 10.0 * self._config.delete_after_s)
-        mean, covariance = predict(
-            people.mean, people.covariance, dt_s, self._config.acceleration_density
-        )
-        people = people.replace(mean=mean, covariance=covariance)
-        return fade_existence(people, dt_s, self._config)
+        belief = predict_modes(people.belief, motion_over(dt_s, self._config))
+        visible = np.ones(len(people))
+        if view is not None:
+            visible = visibility(belief.merged()[0][:, :2], view)
+        return fade(people, belief, dt_s, visible, self._config), visible
 
-    def _update(self, people: People, claims: Measurements) -> tuple[People, IntArray]:
-        innovation, spread = innovations(people.mean, people.covariance, claims)
-        chosen = associate(innovation, spread, claims, self._config.gate_probability)
+    def _update(
+        self, belief: Belief, existence: FloatArray, claims: Measurements, visible: FloatArray
+    ) -> tuple[Belief, FloatArray, IntArray]:
+        """Associate and correct; also says which measurement each track got, or -1."""
+        got = np.full(len(existence), -1, dtype=np.int64)
+        if len(existence) == 0 or len(claims) == 0:
+            return belief, existence, got
+        pairs = find_pairs(belief, claims, self._config)
+        chance = np.maximum(visible * self._config.detection_probability, _DETECTION_MIN)
+        odds = log_odds(pairs, belief.weight, chance)
+        chosen = assign(pairs, odds, len(existence))
         rows = np.flatnonzero(chosen >= 0)
-        if len(rows) == 0:
-            return people, chosen
-        mean, covariance = people.mean.copy(), people.covariance.copy()
-        mean[rows], covariance[rows] = update(
-            people.mean[rows], people.covariance[rows], claims[chosen[rows]]
-        )
-        return people.replace(mean=mean, covariance=covariance), chosen
+        hits = chosen[rows]
+        if self._config.association == "jpda":
+            belief = update_jointly(belief, pairs, marginals(pairs.track, pairs.claim, odds))
+        else:
+            belief = update_assigned(belief, pairs if len(hits) == len(pairs) else pairs[hits])
+        got[rows] = pairs.claim[hits]
+        evidence = np.zeros(len(existence))
+        evidence[rows] = odds[hits] + np.log(1.0 - chance[rows])
+        return belief, believe(existence, evidence), got
 
     def _newcomers(
-        self,
-        people: People,
-        is_called: BoolArray,
-        raised: Measurements,
-        called_by: IntArray,
-        stamp_ns: int,
+        self, raised: Measurements, called_by: IntArray, called_xy_m: FloatArray, stamp_ns: int
     ) -> People:
         """People behind raised hands that belong to nobody known."""
-        left = raised[np.setdiff1d(np.arange(len(raised)), called_by)]
+        config = self._config
+        is_left = np.ones(len(raised), dtype=bool)
+        is_left[called_by[called_by >= 0]] = False
+        left = raised[is_left]
         mean, covariance = initial_state(
             left,
-            unknown_range_m=self._config.unknown_range_m,
-            unknown_range_std_m=self._config.unknown_range_std_m,
-            speed_std_mps=self._config.initial_speed_std_mps,
+            unknown_range_m=config.unknown_range_m,
+            unknown_range_std_m=config.unknown_range_std_m,
+            speed_std_mps=config.initial_speed_std_mps,
         )
         # The second hand of somebody whose first hand has just been counted is nobody new.
-        second = _is_near(mean[:, :2], people.mean[is_called, :2], self._config)
-        mean, covariance, left = mean[~second], covariance[~second], left[~second]
-        ids = np.arange(self._next_id, self._next_id + len(mean), dtype=np.int64)
-        self._next_id += len(mean)
-        window = self._config.confirm_window
-        newcomers = People.begin(ids, mean, covariance, stamp_ns, window, BIRTH_EXISTENCE)
-        return newcomers.replace(hand=left.hand)
+        new = ~is_close(mean[:, :2], called_xy_m, config.same_person_distance_m).any(axis=1)
+        count = int(np.count_nonzero(new))
+        ids = np.arange(self._next_id, self._next_id + count, dtype=np.int64)
+        self._next_id += count
+        belief = Belief.begin(
+            mean[new], covariance[new], _modes(config), config.stand_speed_std_mps
+        )
+        existence = np.full(count, BIRTH_EXISTENCE)
+        people = People.begin(ids, belief, stamp_ns, config.confirm_window, existence)
+        everyone = np.ones(count, dtype=bool)
+        return count_detections(people, everyone, everyone, stamp_ns, config, hand=left.hand[new])
 
 
-def _usable(measurements: Measurements) -> BoolArray:
-    """Rows that a filter can live with: sane numbers, a positive definite covariance."""
-    values, covariance = measurements.values, measurements.covariance
-    polar = measurements.model == MeasurementModel.POLAR
-    bearing_only = polar & np.isnan(values[:, 1])
-    sane = (np.abs(values[:, 0]) < _ABSURD_M) & (np.abs(measurements.sensor_pose) < _ABSURD_M).all(
-        1
-    )
-    sane &= bearing_only | (np.abs(values[:, 1]) < _ABSURD_M)
-    sane &= ~(polar & (values[:, 1] < 0.0))
-    variances = covariance[:, [0, 1], [0, 1]]
-    sane &= ((variances > _VARIANCE_MIN) & (variances < _VARIANCE_MAX)).all(axis=1)
-    # The correlation must be below one, with room for rounding; NaN compares as false throughout.
-    spread = np.sqrt(np.where(sane[:, None], variances, 1.0)).prod(axis=1)
-    mixed = np.abs(covariance[:, [0, 1], [1, 0]])
-    sane &= (mixed < (1.0 - 1e-9) * spread[:, None]).all(axis=1)
-    return np.asarray(sane & (np.abs(covariance[:, 0, 1] - covariance[:, 1, 0]) <= 1e-9 * spread))
+_NOTHING = Measurements.none()
 
 
-def _once_per_person(raised: Measurements, config: Config) -> Measurements:
-    """Two raised hands of one person count once: the first row of each person stays."""
-    _, first = np.unique(raised.person, return_index=True)
-    keep = (raised.person < 0) | np.isin(np.arange(len(raised)), first)
-    raised = raised[keep]
-    mean, _ = initial_state(
-        raised,
-        unknown_range_m=config.unknown_range_m,
-        unknown_range_std_m=config.unknown_range_std_m,
-        speed_std_mps=config.initial_speed_std_mps,
-    )
-    keep = np.ones(len(raised), dtype=bool)
-    for row in range(1, len(raised)):
-        earlier = mean[:row][keep[:row]]
-        keep[row] = not _is_near(mean[row : row + 1, :2], earlier[:, :2], config)[0]
-    return raised[keep]
-
-
-def _is_near(xy_m: FloatArray, others_m: FloatArray, config: Config) -> BoolArray:
-    distance = np.linalg.norm(xy_m[:, None] - others_m[None], axis=-1)
-    return np.asarray((distance < config.same_person_distance_m).any(axis=1))
-
-
-def _hands_of(claims: Measurements, chosen: IntArray) -> IntArray:
-    hands = np.append(claims.hand, -1)  # row -1 answers for tracks without a claim
-    return np.asarray(hands[chosen])
+def _modes(config: Config) -> int:
+    return 2 if config.motion == "imm" else 1

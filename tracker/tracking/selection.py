@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import FloatArray, Tracks
+from tracker.containers import FloatArray
+from tracker.tracking.people import People
 
 
 class Selector:
@@ -21,33 +22,36 @@ class Selector:
         self._last_raised_ns = 0
         self._released: set[int] = set()
 
-    def choose(self, tracks: Tracks, robot_xy_m: FloatArray) -> int | None:
+    def choose(self, people: People, stamp_ns: int, robot_xy_m: FloatArray) -> int | None:
         """The customer who is served after this frame.
 
         Args:
-            tracks: All customers, with their raised state.
+            people: All customers, with their raised state.
+            stamp_ns: This frame's.
             robot_xy_m: Shape (2,): where the robot is, for `selection: nearest`.
 
         Returns:
             Their id, or None where no hand is up.
         """
-        if self._keeps(tracks):
+        if self._keeps(people, stamp_ns):
             return self._chosen_id
-        # A released customer is served again once the hand has been down and up.
-        self._released &= set(tracks.id[tracks.raised].tolist())
-        calling = tracks.raised & ~np.isin(tracks.id, list(self._released))
+        calling = people.streaks.raised
+        if self._released:  # they are served again once the hand has been down and up
+            self._released &= set(people.id[calling].tolist())
+            calling = calling & ~np.isin(people.id, list(self._released))
         rows = np.flatnonzero(calling)
         if len(rows) == 0:
             self._chosen_id = None
             return None
         if self.config.selection == "nearest":
-            order = np.linalg.norm(tracks.mean[rows, :2] - robot_xy_m, axis=-1)
+            mean, _ = people.belief.merged()
+            order = np.linalg.norm(mean[rows, :2] - robot_xy_m, axis=-1)
         elif self.config.selection == "first":
-            order = tracks.raised_since_ns[rows]
+            order = people.raised_since_ns[rows]
         else:
-            order = -tracks.raised_since_ns[rows]
-        self._chosen_id = int(tracks.id[rows[np.argmin(order)]])
-        self._last_raised_ns = tracks.stamp_ns
+            order = -people.raised_since_ns[rows]
+        self._chosen_id = int(people.id[rows[np.argmin(order)]])
+        self._last_raised_ns = stamp_ns
         return self._chosen_id
 
     def release(self) -> int | None:
@@ -66,12 +70,14 @@ class Selector:
         self._chosen_id = None
         self._released.clear()
 
-    def _keeps(self, tracks: Tracks) -> bool:
-        row = tracks.row_of(self._chosen_id)
-        if row is None:
+    def _keeps(self, people: People, stamp_ns: int) -> bool:
+        if self._chosen_id is None:
             return False
-        if tracks.raised[row]:
-            self._last_raised_ns = tracks.stamp_ns
+        rows = np.flatnonzero(people.id == self._chosen_id)
+        if len(rows) == 0:
+            return False
+        if people.streaks.raised[rows[0]]:
+            self._last_raised_ns = stamp_ns
             return True
-        held_ns = tracks.stamp_ns - self._last_raised_ns
+        held_ns = stamp_ns - self._last_raised_ns
         return held_ns <= self.config.selection_hold_s * 1e9 and self.config.selection_hold_s > 0.0

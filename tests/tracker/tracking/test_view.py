@@ -1,0 +1,54 @@
+import numpy as np
+import pytest
+
+from tracker import Config, Measurements, PersonTracker
+from tracker.tracking import View
+from tracker.tracking.view import visibility
+
+AHEAD = View(np.zeros(3), np.deg2rad(70), 8.0)
+
+
+def test_outside_the_field_of_view_or_too_far_nobody_is_seen():
+    xy = np.array([[3.0, 0.0], [-3.0, 0.0], [1.0, 3.0], [9.0, 0.0]])
+    assert visibility(xy, AHEAD).tolist() == [1.0, 0.0, 0.0, 0.0]
+
+
+def test_the_field_of_view_turns_with_the_sensor_across_pi():
+    xy = np.array([[-3.0, 0.1], [-3.0, -0.1]])
+    view = View(np.array([0.0, 0.0, np.pi]), np.deg2rad(40))
+    assert (visibility(xy, view) == 1.0).all()
+
+
+def test_who_stands_behind_somebody_is_hardly_seen():
+    xy = np.array([[2.0, 0.0], [4.0, 0.1], [4.0, 1.5]])
+    seen = visibility(xy, AHEAD)
+    assert seen[[0, 2]] == pytest.approx(1.0)
+    assert 0.0 < seen[1] < 0.5
+
+
+def test_without_a_view_everybody_could_be_seen():
+    assert visibility(np.zeros((2, 2)), None).tolist() == [1.0, 1.0]
+
+
+def test_silence_tells_nothing_of_people_out_of_view():
+    behind = View(np.array([0.0, 0.0, np.pi]), np.deg2rad(70))
+    remaining = {}
+    for name, view in [("in view", AHEAD), ("out of view", behind)]:
+        tracker = PersonTracker(Config(delete_after_s=2.0))
+        claims = Measurements.cartesian([[3.0, 0.0]], 0.01 * np.eye(2))
+        for number in range(5):
+            tracker.step(number * 10**8, claims)
+        for number in range(5, 60):
+            tracks = tracker.step(number * 10**8, Measurements.none(), view=view)
+        remaining[name] = len(tracks)
+    assert remaining == {"in view": 0, "out of view": 1}
+
+
+def test_who_is_out_of_view_for_long_is_forgotten_nevertheless():
+    tracker = PersonTracker(Config(forget_after_s=10.0))
+    claims = Measurements.cartesian([[3.0, 0.0]], 0.01 * np.eye(2))
+    for number in range(5):
+        tracker.step(number * 10**8, claims)
+    behind = View(np.array([0.0, 0.0, np.pi]), np.deg2rad(70))
+    assert len(tracker.step(10 * 10**9, Measurements.none(), view=behind)) == 1
+    assert len(tracker.step(11 * 10**9, Measurements.none(), view=behind)) == 0

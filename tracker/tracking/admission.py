@@ -1,0 +1,123 @@
+"""Which measurements may come in? Sane numbers, once per person, with honest noise."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tracker.config import Config
+from tracker.containers import BoolArray, FloatArray, MeasurementModel, Measurements
+from tracker.tracking.filter import positions
+
+#: Farther than this from the fixed frame's origin there is no person, and less or more than these
+#: variances no sensor claims; beyond them squares overflow.
+_ABSURD_M = 1e6
+_VARIANCE_MIN, _VARIANCE_MAX = 1e-12, 1e9
+#: A bearing with a wider variance than a full turn's says nothing.
+_BEARING_VARIANCE_MAX = (2.0 * np.pi) ** 2
+#: Frames closer together than this are as one where errors are alike.
+_INTERVAL_MIN_S = 0.01
+
+
+def usable(measurements: Measurements) -> BoolArray:
+    """Shape (M,): rows that a filter can live with, finite and with a positive definite R."""
+    if _is_plain(measurements):
+        return np.ones(len(measurements), dtype=bool)
+    values, covariance = measurements.values, measurements.covariance
+    first, second, mixed = covariance[:, 0, 0], covariance[:, 1, 1], covariance[:, 0, 1]
+    polar = measurements.model == MeasurementModel.POLAR
+    far = np.abs(values) < _ABSURD_M  # NaN compares as false, which is what is meant throughout
+    pose = np.abs(measurements.sensor_pose).max(axis=1, initial=0.0) < _ABSURD_M
+    sane = far[:, 0] & (far[:, 1] | (polar & np.isnan(values[:, 1]))) & pose
+    sane &= ~(polar & (values[:, 1] < 0.0))
+    sane &= (np.minimum(first, second) > _VARIANCE_MIN) & (second < _VARIANCE_MAX)
+    sane &= first < np.where(polar, _BEARING_VARIANCE_MAX, _VARIANCE_MAX)
+    if mixed.any() or covariance[:, 1, 0].any():
+        # The correlation must be below one, with room for rounding.
+        spread = np.sqrt(np.where(sane, first, 1.0) * np.where(sane, second, 1.0))
+        sane &= np.abs(mixed) < (1.0 - 1e-9) * spread
+        mirrored = np.where(sane, covariance[:, 1, 0], 0.0)
+        sane &= np.abs(np.where(sane, mixed, 0.0) - mirrored) <= 1e-9 * spread
+    if measurements.sensor_pose_covariance.any():
+        sane &= _is_semidefinite(measurements.sensor_pose_covariance)
+    return np.asarray(sane)
+
+
+def _is_plain(measurements: Measurements) -> bool:
+    """Every row has a range or position and is beyond doubt: said of all at once, it is cheap."""
+    if len(measurements) == 0 or measurements.sensor_pose_covariance.any():
+        return False
+    noise = measurements.covariance.reshape(-1, 4)
+    low, mixed, mixed_too, low_second = noise.min(axis=0).tolist()
+    high, mixed_high, mixed_too_high, high_second = noise.max(axis=0).tolist()
+    return bool(
+        mixed == mixed_too == mixed_high == mixed_too_high == 0.0
+        and min(low, low_second) > _VARIANCE_MIN
+        and high < _BEARING_VARIANCE_MAX
+        and high_second < _VARIANCE_MAX
+        and np.abs(measurements.values).max() < _ABSURD_M
+        and np.abs(measurements.sensor_pose).max() < _ABSURD_M
+        and (measurements.values[:, 1].min() >= 0.0 or measurements.model.all())
+    )
+
+
+def once_per_person(raised: Measurements, config: Config) -> Measurements:
+    """Two raised hands of one person count once: the first row of each person stays."""
+    if len(raised) < 2:
+        return raised
+    if raised.person.max() >= 0:
+        _, first = np.unique(raised.person, return_index=True)
+        keep = raised.person < 0
+        keep[first] = True
+        raised = raised[keep]
+    xy = positions(raised, config.unknown_range_m)
+    close: BoolArray = is_close(xy, xy, config.same_person_distance_m)
+    if np.count_nonzero(close) <= len(raised):  # everybody is close to themselves alone
+        return raised
+    keep = np.ones(len(raised), dtype=bool)
+    for row in np.flatnonzero(np.tril(close, -1).any(axis=1)):
+        keep[row] = not (close[row, :row] & keep[:row]).any()
+    return raised[keep]
+
+
+def is_close(xy_m: FloatArray, others_m: FloatArray, distance_m: float) -> BoolArray:
+    """Shape (A, B): which points are closer together than a distance."""
+    square = xy_m[:, None, 0] - others_m[:, 0]
+    square *= square
+    across = xy_m[:, None, 1] - others_m[:, 1]
+    across *= across
+    square += across
+    return np.asarray(square < distance_m**2)
+
+
+def with_hand_bias(raised: Measurements, dt_s: float, config: Config) -> Measurements:
+    """Widen bearings whose errors are alike from frame to frame.
+
+    A raised hand stands beside the body, to the same side for as long as it is up. Errors with the
+    correlation rho from frame to frame tell, over many frames, as much as independent ones with
+    (1 + rho) / (1 - rho) times the variance. Where the scan has shown the body itself, its range
+    is known and there is no such bias. The first look at somebody is taken for worse than it is.
+
+    Args:
+        raised: Raised hands.
+        dt_s: Since the last frame.
+        config: `hand_bias_duration_s`; 0 changes nothing.
+    """
+    alone = np.isnan(raised.values[:, 1])
+    if config.hand_bias_duration_s == 0.0 or not alone.any():
+        return raised
+    alike = np.exp(-max(dt_s, _INTERVAL_MIN_S) / config.hand_bias_duration_s)
+    noise = np.array(raised.covariance)
+    noise[alone, 0, 0] = np.minimum(
+        noise[alone, 0, 0] * (1.0 + alike) / (1.0 - alike), _BEARING_VARIANCE_MAX
+    )
+    return replace(raised, covariance=noise)
+
+
+def _is_semidefinite(covariance: FloatArray) -> BoolArray:
+    finite = np.asarray((np.abs(covariance) < _VARIANCE_MAX).all(axis=(1, 2)))
+    safe = np.where(finite[:, None, None], covariance, 0.0)
+    symmetric = np.abs(safe - np.swapaxes(safe, 1, 2)).max(axis=(1, 2))
+    least, most = np.linalg.eigvalsh(safe)[:, [0, -1]].T
+    return np.asarray(finite & (symmetric <= 1e-9 * most) & (least >= -1e-9 * most))
