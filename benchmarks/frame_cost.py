@@ -1,0 +1,190 @@
+"""What does one frame cost, at 1 to 500 people? The product beside its peers, in one run.
+
+    python benchmarks/frame_cost.py [--people 1 5 20 100 500] [--seconds 12]
+
+Everybody is tracked and measured in every frame, far enough apart that no tracker has to guess.
+Contenders take turns, a frame each, so that other work on the machine slows all alike; medians.
+
+  plain       product: constant velocity, Hungarian, Gaussian ranges
+  default     product: every default (stand-or-walk IMM, heavy-tailed ranges, occlusion, existence)
+  filterpy    one KalmanFilter per person, predict + update, measurements already assigned
+  norfair, motpy, Stone Soup (2-D assignment): as their documentation sets them up
+
+norfair and motpy get positions (they know nothing else), and so does filterpy; the others get
+bearings and ranges. Stone Soup is left out where a frame would take seconds, and so is whoever is
+not installed (`pip install -e .[bench]` brings all).
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+import warnings
+from collections.abc import Callable
+from importlib.util import find_spec
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from tracker import Config, Measurements, PersonTracker
+from tracker.tracking.view import View
+
+PERIOD_S = 0.1
+STD_M = 0.05
+STONE_SOUP_MOST = 100
+Step = Callable[[int, np.ndarray], None]
+
+
+def product(**parameters: object) -> Callable[[int], Step]:
+    """The product, with some parameters."""
+
+    def make(people: int) -> Step:
+        tracker = PersonTracker(Config().replace(**parameters))
+        view = View(np.zeros(3), 2 * np.pi) if not parameters else None
+
+        def step(frame: int, xy: np.ndarray) -> None:
+            bearing, range_m = np.arctan2(xy[:, 1], xy[:, 0]), np.hypot(xy[:, 0], xy[:, 1])
+            measured = Measurements.polar(bearing, range_m, STD_M / range_m, STD_M)
+            tracks = tracker.step(round(frame * PERIOD_S * 1e9), measured, view=view)
+            # The gate turns one true measurement in a hundred away, which begins a track.
+            assert people <= len(tracks) <= 1.2 * people + 3
+
+        return step
+
+    return make
+
+
+def filterpy(people: int) -> Step:
+    """A loop of filters, each with its measurement."""
+    from filterpy.common import Q_continuous_white_noise
+    from filterpy.kalman import KalmanFilter
+
+    filters = []
+    for _ in range(people):
+        item = KalmanFilter(4, 2)
+        item.F = np.eye(4) + PERIOD_S * np.eye(4, k=2)
+        item.H, item.R = np.eye(2, 4), STD_M**2 * np.eye(2)
+        item.Q = Q_continuous_white_noise(2, PERIOD_S, 0.3, 2, order_by_dim=False)
+        filters.append(item)
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        for item, z in zip(filters, xy, strict=True):
+            item.predict()
+            item.update(z)
+
+    return step
+
+
+def norfair(people: int) -> Step:
+    """The tracker of norfair, for points."""
+    from norfair import Detection, Tracker
+
+    tracker = Tracker(distance_function="euclidean", distance_threshold=1.0)
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        tracker.update([Detection(points=point[None]) for point in xy])
+
+    return step
+
+
+def motpy(people: int) -> Step:
+    """The tracker of motpy, for boxes a meter wide."""
+    from motpy import Detection, MultiObjectTracker
+
+    tracker = MultiObjectTracker(dt=PERIOD_S)
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        boxes = np.concatenate([xy - 0.5, xy + 0.5], axis=1)
+        tracker.step([Detection(box=box) for box in boxes])
+
+    return step
+
+
+def stone_soup(people: int) -> Step:
+    """Stone Soup's extended Kalman filter and two-dimensional assignment."""
+    from _stone_soup import StoneSoup
+
+    tracker = StoneSoup((0.02, STD_M), "gnn", min_points=2)
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        bearing, range_m = np.arctan2(xy[:, 1], xy[:, 0]), np.hypot(xy[:, 0], xy[:, 1])
+        measured = Measurements.polar(bearing, range_m, 0.02, STD_M)
+        tracker.step(round(frame * PERIOD_S * 1e9), measured)
+
+    return step
+
+
+CONTENDERS: dict[str, Callable[[int], Step]] = {
+    "plain": product(motion="cv", association="hungarian", outlier_dof=0.0),
+    "default": product(),
+    "filterpy": filterpy,
+    "norfair": norfair,
+    "motpy": motpy,
+    "Stone Soup": stone_soup,
+}
+
+MODULES = {
+    "filterpy": "filterpy", "norfair": "norfair", "motpy": "motpy", "Stone Soup": "stonesoup",
+}  # fmt: skip
+
+
+def places(people: int) -> np.ndarray:
+    """A grid with two meters between neighbors, beside the sensor."""
+    side = int(np.ceil(np.sqrt(people)))
+    grid = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)
+    return 3.0 + 2.0 * grid[:people].astype(float)
+
+
+def medians_us(people: int, seconds: float) -> dict[str, float]:
+    """Median microseconds of a frame of each contender; NaN where it was left out."""
+    rng = np.random.default_rng(people)
+    at = places(people)
+    steps = {
+        name: make(people)
+        for name, make in CONTENDERS.items()
+        if find_spec(MODULES.get(name, "tracker")) is not None
+        and (name != "Stone Soup" or people <= STONE_SOUP_MOST)
+    }
+    spent: dict[str, list[float]] = {name: [] for name in CONTENDERS}
+    begin_s, frame = time.perf_counter(), 0
+    while frame < 8 or (time.perf_counter() - begin_s < seconds and frame < 400):
+        at = at + rng.normal(0.0, 0.01, at.shape)
+        measured = at + rng.normal(0.0, STD_M, at.shape)
+        for name, step in steps.items():
+            start = time.perf_counter()
+            step(frame, measured)
+            spent[name].append(time.perf_counter() - start)
+        frame += 1
+    # The first frames confirm everybody; they cost something else.
+    return {
+        name: 1e6 * float(np.median(times[4:])) if times else np.nan
+        for name, times in spent.items()
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--people", type=int, nargs="+", default=[1, 5, 20, 100, 500])
+    parser.add_argument("--seconds", type=float, default=12.0, help="for each number of people")
+    words = parser.parse_args()
+    warnings.filterwarnings("ignore", module="norfair|motpy|filterpy|stonesoup")
+    cost, ratio = (Table(title=title, title_justify="left") for title in (
+        "median microseconds of a frame", "times as much as `plain`"
+    ))  # fmt: skip
+    for table in (cost, ratio):
+        for column in ("people", *CONTENDERS):
+            table.add_column(column, justify="right")
+    for people in words.people:
+        medians = medians_us(people, words.seconds)
+        told = {name: "-" if np.isnan(us) else f"{us:,.0f}" for name, us in medians.items()}
+        cost.add_row(str(people), *told.values())
+        shares = [us / medians["plain"] for us in medians.values()]
+        ratio.add_row(str(people), *("-" if np.isnan(x) else f"{x:.1f}" for x in shares))
+    console = Console()
+    console.print(cost)
+    console.print(ratio)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,203 @@
+"""How many trial-frames of Monte Carlo in a second? The product's arrays beside loops of filters.
+
+    python benchmarks/trial_frames.py [--people 5 20] [--trials 200] [--seconds 20]
+
+A trial-frame is one frame of one trial with so many people. Two kinds of work:
+
+  filter    predict and update of everybody, whose measurement is whose being known
+  tracker   the whole of it: gate, association, update, life cycle
+
+The product's filter takes all trials as one array. Its tracker does as well: each trial is a room
+of its own with its own sensor, the rooms stand a kilometer apart, and gates see to the rest.
+filterpy (linear, positions) and Stone Soup (extended, bearing and range) run one trial, as they
+would run each of many. Contenders take turns, so that other work slows all alike; medians.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+from datetime import timedelta
+
+import numpy as np
+from _stone_soup import START, StoneSoup
+from rich.console import Console
+from rich.table import Table
+from scipy.optimize import linear_sum_assignment
+from stonesoup.types.detection import Detection
+from stonesoup.types.hypothesis import SingleHypothesis
+from stonesoup.types.state import GaussianState
+
+from tracker import Config, Measurements, PersonTracker
+from tracker.tracking.filter import update
+from tracker.tracking.motion import predict
+
+PERIOD_S, BEARING_STD_RAD, RANGE_STD_M, DENSITY = 0.1, 0.01, 0.05, 0.3
+ROOM_M = 1000.0
+Step = Callable[[int, np.ndarray], None]  # frame, positions (B, N, 2)
+
+
+def polar(xy: np.ndarray, sensor_pose: np.ndarray) -> Measurements:
+    """Exact measurements of positions (K, 2) from sensors (K, 3) without turn."""
+    offset = xy - sensor_pose[:, :2]
+    bearing, range_m = np.arctan2(offset[:, 1], offset[:, 0]), np.hypot(*offset.T)
+    return Measurements.polar(bearing, range_m, BEARING_STD_RAD, RANGE_STD_M, sensor_pose)
+
+
+def product_filter(trials: int, people: int) -> Step:
+    state = {
+        "mean": np.zeros((trials * people, 4)),
+        "covariance": np.broadcast_to(np.eye(4), (trials * people, 4, 4)),
+    }
+    sensors = np.zeros((trials * people, 3))
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        flat = xy.reshape(-1, 2)
+        if frame == 0:
+            state["mean"][:, :2] = flat
+        prior = predict(state["mean"], state["covariance"], PERIOD_S, DENSITY)
+        state["mean"], state["covariance"] = update(*prior, polar(flat, sensors))
+
+    return step
+
+
+def product_tracker(trials: int, people: int) -> Step:
+    tracker = PersonTracker(Config().replace(motion="cv", outlier_dof=0.0))
+    sensors = np.zeros((trials, people, 3))
+    # A square of rooms, so that nobody is too far from the origin.
+    side = int(np.ceil(np.sqrt(trials)))
+    rooms = ROOM_M * np.stack(np.divmod(np.arange(trials), side), axis=-1)
+    sensors[..., :2] = rooms[:, None]
+    flat = sensors.reshape(-1, 3)
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        measured = polar((xy + rooms[:, None]).reshape(-1, 2), flat)
+        tracker.step(round(frame * PERIOD_S * 1e9), measured)
+
+    return step
+
+
+def filterpy_filters(people: int) -> list:
+    from filterpy.common import Q_continuous_white_noise
+    from filterpy.kalman import KalmanFilter
+
+    filters = []
+    for _ in range(people):
+        item = KalmanFilter(4, 2)
+        item.F = np.eye(4) + PERIOD_S * np.eye(4, k=2)
+        item.H, item.R = np.eye(2, 4), RANGE_STD_M**2 * np.eye(2)
+        item.Q = Q_continuous_white_noise(2, PERIOD_S, DENSITY, 2, order_by_dim=False)
+        filters.append(item)
+    return filters
+
+
+def filterpy_filter(trials: int, people: int) -> Step:
+    filters = filterpy_filters(people)
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        for item, z in zip(filters, xy[0], strict=True):
+            item.predict()
+            item.update(z)
+
+    return step
+
+
+def filterpy_tracker(trials: int, people: int) -> Step:
+    filters = filterpy_filters(people)
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        if frame == 0:
+            for item, z in zip(filters, xy[0], strict=True):
+                item.x[:2, 0] = z
+        for item in filters:
+            item.predict()
+        expected = np.array([item.x[:2, 0] for item in filters])
+        distance = np.linalg.norm(expected[:, None] - xy[0][None], axis=-1)
+        for row, column in zip(*linear_sum_assignment(distance), strict=True):
+            filters[row].update(xy[0][column])
+
+    return step
+
+
+def stone_soup_filter(trials: int, people: int) -> Step:
+    peer = StoneSoup((BEARING_STD_RAD, RANGE_STD_M), acceleration_density=DENSITY)
+    states: list[GaussianState] = []
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        now = START + timedelta(seconds=frame * PERIOD_S)
+        if frame == 0:
+            for x, y in xy[0]:
+                states.append(GaussianState([[x], [0], [y], [0]], np.eye(4), now))
+        for row, (x, y) in enumerate(xy[0]):
+            z = np.array([[np.arctan2(y, x)], [np.hypot(x, y)]])
+            prediction = peer.predictor.predict(states[row], timestamp=now)
+            hypothesis = SingleHypothesis(prediction, Detection(z, now, peer.sensor))
+            states[row] = peer.updater.update(hypothesis)
+
+    return step
+
+
+def stone_soup_tracker(trials: int, people: int) -> Step:
+    peer = StoneSoup((BEARING_STD_RAD, RANGE_STD_M), "gnn", acceleration_density=DENSITY)
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        peer.step(round(frame * PERIOD_S * 1e9), polar(xy[0], np.zeros((len(xy[0]), 3))))
+
+    return step
+
+
+WORK: dict[str, dict[str, Callable[[int, int], Step]]] = {
+    "filter": {
+        "product": product_filter,
+        "filterpy": filterpy_filter,
+        "Stone Soup": stone_soup_filter,
+    },
+    "tracker": {
+        "product": product_tracker,
+        "filterpy": filterpy_tracker,
+        "Stone Soup": stone_soup_tracker,
+    },
+}
+
+
+def rates(work: str, people: int, trials: int, seconds: float) -> dict[str, float]:
+    """Trial-frames a second of each contender."""
+    rng = np.random.default_rng(people)
+    side = int(np.ceil(np.sqrt(people)))
+    grid = np.stack(np.divmod(np.arange(people), side), axis=-1)
+    at = np.broadcast_to(3.0 + 2.0 * grid, (trials, people, 2))
+    steps = {name: make(trials, people) for name, make in WORK[work].items()}
+    spent: dict[str, list[float]] = {name: [] for name in steps}
+    begin_s, frame = time.perf_counter(), 0
+    while frame < 8 or (time.perf_counter() - begin_s < seconds and frame < 300):
+        measured = at + rng.normal(0.0, 0.03, at.shape)
+        for name, step in steps.items():
+            start = time.perf_counter()
+            step(frame, measured)
+            spent[name].append(time.perf_counter() - start)
+        frame += 1
+    at_once = {name: trials if name == "product" else 1 for name in steps}
+    return {name: at_once[name] / float(np.median(times[4:])) for name, times in spent.items()}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--people", type=int, nargs="+", default=[5, 20])
+    parser.add_argument("--trials", type=int, default=60)
+    parser.add_argument("--seconds", type=float, default=15.0, help="for each line")
+    words = parser.parse_args()
+    table = Table(title=f"trial-frames a second, {words.trials} trials", title_justify="left")
+    for column in ("work", "people", "product", "filterpy", "Stone Soup", "x filterpy", "x S. S."):
+        table.add_column(column, justify="right")
+    for work in WORK:
+        for people in words.people:
+            found = rates(work, people, words.trials, words.seconds)
+            times = [found["product"] / found[name] for name in ("filterpy", "Stone Soup")]
+            numbers = [f"{value:,.0f}" for value in [*found.values(), *times]]
+            table.add_row(work, str(people), *numbers)
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()

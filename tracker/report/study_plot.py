@@ -1,0 +1,90 @@
+"""What did a Monte Carlo study find, in one picture?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tracker.containers import FloatArray
+from tracker.evaluation.consistency import mean_bounds
+from tracker.evaluation.study import FilterStudy, PeopleStudy, Study
+from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
+
+_GOSPA_PARTS = ("localisation", "missed", "false")
+_DISTRIBUTIONS = (
+    ("gospa_m", "GOSPA (m)"),
+    ("identity_switches_per_min", "identity switches a minute"),
+    ("time_to_raise_s", "time to raise (s)"),
+    ("nees_position", "NEES of the position (ideal 2)"),
+)
+
+
+def draw_study(study: Study, path: str | Path) -> None:
+    """Draw a study: error and NEES over time of a filter, spread over the trials otherwise.
+
+    Args:
+        study: What was found.
+        path: The .png file, replaced if it exists.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    figure = Figure(figsize=(10.0, 4.4), dpi=160, facecolor=PAPER, layout="constrained")
+    if isinstance(study, FilterStudy):
+        _draw_filter(figure, study)
+    else:
+        _draw_people(figure, study)
+    figure.suptitle(f"{study.name}: {study.trials} trials of seed {study.seed}", color=INK)
+    figure.savefig(path, format="png")
+
+
+def _draw_filter(figure: Figure, study: FilterStudy) -> None:
+    error, nees = figure.subplots(1, 2)
+    at_s = (1 + np.arange(len(study.nees))) / study.scenario.rate_hz
+    error.plot(at_s, np.sqrt(study.squared_error_m2), color=PERSON_COLORS[0], label="RMSE")
+    error.plot(at_s, np.sqrt(study.bound_m2), "--", color=INK, label="Cramer-Rao bound")
+    error.set(xlabel="time (s)", ylabel="error of the position (m)", ylim=(0.0, None))
+    error.legend(frameon=False)
+    low, high = mean_bounds(4, study.trials)
+    nees.axhspan(low, high, color=LIT, alpha=0.3, label="95 % of perfect filters")
+    nees.axhline(4.0, color=FADED, linewidth=0.8)
+    nees.plot(at_s, study.nees, color=PERSON_COLORS[1], label="mean NEES")
+    nees.set(xlabel="time (s)", ylabel="NEES (ideal 4)")
+    nees.legend(frameon=False)
+    _plain(error)
+    _plain(nees)
+
+
+def _draw_people(figure: Figure, study: PeopleStudy) -> None:
+    grid = figure.add_gridspec(2, 4)
+    parts = figure.add_subplot(grid[:, :2])
+    order = np.argsort(study.rows["gospa_m"])
+    below = np.zeros(study.trials)
+    for part, color in zip(_GOSPA_PARTS, PERSON_COLORS, strict=False):
+        values = study.rows[f"gospa_{part}"][order]
+        parts.bar(np.arange(study.trials), values, 1.0, below, color=color, label=part)
+        below += values
+    parts.set(xlabel="trials, best first", ylabel="GOSPA squared, by parts (m$^2$)")
+    parts.legend(frameon=False)
+    _plain(parts)
+    for place, (name, title) in enumerate(_DISTRIBUTIONS):
+        axes = figure.add_subplot(grid[place // 2, 2 + place % 2])
+        _draw_distribution(axes, study.rows[name], title)
+
+
+def _draw_distribution(axes: Axes, values: FloatArray, title: str) -> None:
+    values = values[np.isfinite(values)]
+    if len(values):
+        axes.hist(values, bins=min(20, max(5, len(values) // 4)), color=PERSON_COLORS[0])
+        axes.axvline(float(values.mean()), color=INK, linewidth=1.2)
+    axes.set(xlabel=title, ylabel="trials")
+    _plain(axes)
+
+
+def _plain(axes: Axes) -> None:
+    axes.set_facecolor(PAPER)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(colors=INK, labelsize=8)

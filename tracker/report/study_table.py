@@ -1,0 +1,78 @@
+"""How does a Monte Carlo study look in a terminal, and in a file?"""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tracker.errors import RecordingError
+from tracker.evaluation.study import Figure, Study, study_as_dict
+from tracker.report.study_plot import draw_study
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+
+def study_table(study: Study) -> Table:
+    """One line per figure, with its interval, and what a perfect filter would show."""
+    from rich.table import Table
+
+    table = Table(
+        title=f"{study.name}: {study.trials} trials of seed {study.seed}\n{study.scenario.title}",
+        title_justify="left",
+    )
+    table.add_column("figure", no_wrap=True)
+    for name in ("value", "95 % interval", "expected"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for figure in study.figures:
+        value = "-" if np.isnan(figure.value) else f"{figure.value:.3f}".removesuffix(".000")
+        style = "red" if figure.as_expected is False else ""
+        table.add_row(figure.name, value, _interval(figure), _expected(figure), style=style)
+    return table
+
+
+def write_study(study: Study, folder: str | Path) -> tuple[Path, ...]:
+    """Write study.json (everything), trials.csv (a line per trial) and study.png.
+
+    Args:
+        study: What was found.
+        folder: Made where it is missing; what is there is replaced.
+
+    Returns:
+        The files.
+
+    Raises:
+        RecordingError: A file cannot be written.
+    """
+    folder = Path(folder)
+    document, table, picture = (
+        folder / name for name in ("study.json", "trials.csv", "study.png")
+    )
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(study_as_dict(study), indent=1) + "\n"
+        document.write_text(text, encoding="utf-8")
+        with table.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["trial", *study.rows])
+            for trial, row in enumerate(zip(*study.rows.values(), strict=True)):
+                writer.writerow([trial, *(f"{value:.9g}" for value in row)])
+        draw_study(study, picture)
+    except OSError as error:
+        raise RecordingError(
+            f"{folder}: cannot be written ({error.strerror}); "
+            "a folder that may be written and has room is needed."
+        ) from error
+    return document, table, picture
+
+
+def _interval(figure: Figure) -> str:
+    return "" if np.isnan(figure.low) else f"{figure.low:.3f} to {figure.high:.3f}"
+
+
+def _expected(figure: Figure) -> str:
+    return "" if figure.expected is None else "{:.3f} to {:.3f}".format(*figure.expected)
