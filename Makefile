@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 INSTALL := PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --disable-pip-version-check \
 	$(if $(NUMPY),"numpy==$(NUMPY)")
 
-.PHONY: help demo test lint bench config setup
+.PHONY: help demo test soak lint bench config setup
 .DEFAULT_GOAL := help
 
 help:  ## this index
@@ -19,18 +19,25 @@ demo: $(VENV)/.installed  ## simulate a restaurant, replay it, print who raised 
 	$(BIN)/raised-hand demo
 
 test: $(VENV)/.installed-test  ## run the tests
-	$(BIN)/python -m pytest -n auto --maxprocesses 2
+	$(BIN)/python -m pytest -n auto --maxprocesses 2 -m "not slow"
+ifeq ($(NUMPY),)
+	$(BIN)/python -m pytest -m "slow and not soak" -rs
+endif
+
+soak: $(VENV)/.installed-test  ## an hour of simulated time through the node: about eight minutes
+	$(BIN)/python -m pytest -m soak -s
 
 lint: $(VENV)/.installed-lint  ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-bench: $(VENV)/.installed-test  ## time the product against its peers
-	@set -e; for file in benchmarks/[a-z]*.py; do echo "$$file"; $(BIN)/python "$$file"; done
+bench:  ## time the product against its peers, some of which want numpy 1
+	@$(MAKE) --no-print-directory VENV=.venv-bench .venv-bench/.installed-bench
+	@set -e; for file in benchmarks/[a-z]*.py; do echo "$$file"; .venv-bench/bin/python "$$file"; done
 
-config: $(VENV)/.installed  ## write config/hand_detector.yaml anew from tracker/config.py
-	$(BIN)/python -m tracker.config_file config/hand_detector.yaml
+config: $(VENV)/.installed  ## write the parameter file and docs/parameters.md from tracker/config.py
+	$(BIN)/python -m tracker.config_file config/hand_detector.yaml docs/parameters.md
 
 setup: $(VENV)/.installed $(VENV)/.installed-test $(VENV)/.installed-lint  ## everything for development
 

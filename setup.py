@@ -27,6 +27,18 @@ setup(
             "filterpy>=1.4.5,<3",
             "ai-edge-litert>=1.2,<3",
             "rosbags-image>=0.10,<0.12",
+            "stonesoup>=1.9,<2",
+            "cyclonedds==11.0.1; python_version < '3.14'",
+        ]
+    },
+    # `colcon build --symlink-install` does not see pyproject.toml.
+    entry_points={
+        "console_scripts": [
+            "raised-hand = tracker.cli:main",
+            "raised-hand-dds = nodes.dds_hand_detector:main",
+            "hand_detector = nodes.hand_detector:main",
+            "lifecycle_hand_detector = nodes.lifecycle_hand_detector:main",
+            "perception.py = nodes.hand_detector:main",
         ]
     },
     data_files=[
@@ -34,7 +46,7 @@ setup(
         (SHARE, [path for path in ["package.xml"] if Path(path).is_file()]),
         (f"{SHARE}/config", sorted(glob("config/*.yaml") + glob("config/*.rviz"))),
         (f"{SHARE}/config/scenes", sorted(glob("config/scenes/*.yaml"))),
-        (f"{SHARE}/launch", sorted(glob("nodes/launch/*.launch.py"))),
+        (f"{SHARE}/launch", sorted(glob("launch/*.launch.py"))),
     ],
     zip_safe=False,
 )

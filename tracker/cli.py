@@ -6,16 +6,26 @@ Results go to standard output, progress and complaints to standard error. Exit s
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, NoReturn
 
 import typer
-from rich.console import Console
 
+from tracker.cli_models import models_app
+from tracker.cli_monte_carlo import monte_carlo_command
+from tracker.cli_options import (
+    ConfigOption,
+    JsonOption,
+    ParameterOption,
+    complain,
+    console,
+    errors,
+    parameters_from,
+    print_files,
+    print_json,
+)
 from tracker.cli_progress import bar, fetch_models_if_needed
-from tracker.config import Config
 from tracker.errors import ConfigError, RecordingError, SceneError, TrackerError
 
 app = typer.Typer(
@@ -27,24 +37,11 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
+app.command("monte-carlo")(monte_carlo_command)
 app.add_typer(models_app, name="models", no_args_is_help=True)
 
 #: The demo's pictures go as JPEG: raw they would fill a gigabyte of the reader's disk.
 _DEMO_JPEG_QUALITY = 92
-
-_console = Console()
-_errors = Console(stderr=True)
-
-ConfigOption = Annotated[
-    Path | None,
-    typer.Option("--config", "-c", help="ROS parameter file, as config/hand_detector.yaml."),
-]
-ParameterOption = Annotated[
-    list[str] | None,
-    typer.Option("--param", "-p", help="One parameter, as in -p ranging:=spec; may be repeated."),
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 
 
 def main() -> NoReturn:
@@ -56,7 +53,7 @@ def main() -> NoReturn:
     except TrackerError as error:
         _fail(error, 1)
     except KeyboardInterrupt:
-        _errors.print("\nraised-hand: stopped; what was written until now can be read.")
+        errors.print("\nraised-hand: stopped; what was written until now can be read.")
         sys.exit(130)
     sys.exit(0)
 
@@ -80,20 +77,20 @@ def demo(
     from tracker.replay import replay
     from tracker.report.episode_table import episode_table
 
-    parameters = _parameters(config, param)
-    fetch_models_if_needed(_errors)
+    parameters = parameters_from(config, param)
+    fetch_models_if_needed(errors)
     recording = out / "recording.mcap"
     _simulate(scene, recording, seed, _DEMO_JPEG_QUALITY, force=True)
-    with bar(_errors, "Replaying") as progress:
+    with bar(errors, "Replaying") as progress:
         result = replay(recording, out, parameters, progress=progress)
     episodes = result.episodes
     if episodes is None:
         raise RecordingError(f"{recording}: holds no truth to compare with.")
     if as_json:
-        _print_json(result.summary)
+        print_json(result.summary)
     else:
-        _console.print(episode_table(episodes))
-        _print_files((recording, *result.files))
+        console.print(episode_table(episodes))
+        print_files((recording, *result.files))
     if episodes.missed or episodes.invented:
         sys.exit(1)
 
@@ -130,22 +127,24 @@ def replay_command(
 
     if stamps not in ("header", "log"):
         raise ConfigError(f"--stamps is {stamps!r}; allowed is header or log.")
-    parameters = _parameters(config, param)
+    parameters = parameters_from(config, param)
     if not source.exists():
         raise ConfigError(f"{source}: there is no such file or folder.")
-    fetch_models_if_needed(_errors)
+    fetch_models_if_needed(errors)
     topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
-    with bar(_errors, "Replaying") as progress:
+    with bar(errors, "Replaying") as progress:
         result = replay(source, out, parameters, topics=topics, stamps=stamps, progress=progress)
     if as_json:
-        _print_json(result.summary)
+        print_json(result.summary)
     else:
-        _console.print(summary_table(result.history))
-        _print_files(result.files)
+        table = summary_table(result.history)
+        images = f"{result.history.frames_processed} images"
+        console.print(table if table.row_count else f"Nobody raised a hand in {images}.")
+        print_files(result.files)
     for remark in result.summary["remarks"]:  # type: ignore[attr-defined]
-        _errors.print(f"note: {remark}", highlight=False, markup=False, soft_wrap=True)
+        errors.print(f"note: {remark}", highlight=False, markup=False, soft_wrap=True)
     for problem in result.problems:
-        _complain(problem)
+        complain(problem)
     if result.problems:
         sys.exit(1)
 
@@ -167,78 +166,76 @@ def simulate(
     own. Scenes are YAML; those in config/scenes are examples.
     """
     _simulate(scene, out, seed, jpeg, force=force)
-    _print_files((out,))
+    print_files((out,))
 
 
-@models_app.command("fetch")
-def models_fetch(
-    source: Annotated[
-        Path | None,
-        typer.Option("--from", help="The mediapipe wheel, fetched elsewhere; else pip is asked."),
-    ] = None,
-    to: Annotated[
-        Path | None,
-        typer.Option(
-            "--to", help="Folder for the ONNX files; else RAISED_HAND_MODELS or the cache."
-        ),
-    ] = None,
+@app.command("play")
+def play_command(
+    source: Annotated[Path, typer.Argument(help="rosbag2 folder, .mcap, .db3, .bag, video.")],
+    rate: Annotated[float, typer.Option("--rate", "-r", help="Times as fast.")] = 1.0,
+    loop: Annotated[bool, typer.Option("--loop", "-l", help="Begin anew at the end.")] = False,
+    start_offset: Annotated[float, typer.Option(help="Begin so many seconds in.", min=0.0)] = 0.0,
+    clock: Annotated[bool, typer.Option("--clock", help="Publish /clock as well.")] = False,
+    best_effort: Annotated[
+        bool, typer.Option("--best-effort", help="Offer sensors' data as their drivers do.")
+    ] = False,
+    topic: Annotated[list[str] | None, typer.Option(help="Only this; may be repeated.")] = None,
+    remap: Annotated[list[str] | None, typer.Option(help="FROM:=TO; may be repeated.")] = None,
+    delay: Annotated[float, typer.Option(help="Seconds before the first message.", min=0.0)] = 1.0,
 ) -> None:
-    """Take the hand and pose models from their PyPI wheel and convert them to ONNX.
+    """Publish a recording in real time to ROS 2 nodes, without ROS (needs the extra `dds`).
 
-    For a robot without a network: fetch with --to on another machine, copy the folder, and set the
-    environment variable RAISED_HAND_MODELS to it.
+    Nodes are met as ROS 2 does: by ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE.
     """
-    from tracker.cli_progress import fetch_progress
-    from tracker.perception.models import ModelStore, fetch_models
+    from nodes.play import play
 
-    store = ModelStore(to)
-    with fetch_progress(_errors) as progress:
-        fetch_models(store, source, progress)
-    _console.print(f"models are in {store.directory}", highlight=False, soft_wrap=True)
-
-
-@models_app.command("list")
-def models_list(as_json: JsonOption = False) -> None:
-    """Show which models are there, and where."""
-    from rich.table import Table
-
-    from tracker.perception.models import ModelStore
-
-    rows = ModelStore().status()
-    if as_json:
-        _print_json(
-            [
-                {"name": row.name, "state": row.state.value, "path": str(row.path)}
-                | {"size_bytes": row.size_bytes, "source_sha256": row.source_sha256}
-                for row in rows
-            ]
+    if not source.exists():
+        raise ConfigError(f"{source}: there is no such file or folder.")
+    with bar(errors, "Playing") as progress:
+        played = play(
+            source,
+            rate=rate,
+            loop=loop,
+            start_offset_s=start_offset,
+            clock=clock,
+            best_effort=best_effort,
+            topics=topic,
+            remaps=remap or (),
+            delay_s=delay,
+            progress=progress,
         )
-        return
-    table = Table("model", "state", "size", "file")
-    for row in rows:
-        size = f"{row.size_bytes / 1e6:.1f} MB" if row.size_bytes else ""
-        table.add_row(row.name, row.state.value, size, str(row.path))
-    _console.print(table)
+    for sentence in played.skipped:
+        complain(sentence)
+    for name, count in played.counts.items():
+        console.print(f"{name}: {count}", highlight=False, soft_wrap=True)
 
 
-def _parameters(config: Path | None, assignments: list[str] | None) -> Config:
-    import yaml
+@app.command("echo")
+def echo_command(
+    topic: Annotated[str, typer.Argument(help="As /hand_raised.")],
+    once: Annotated[bool, typer.Option("--once", help="Print one message.")] = False,
+    count: Annotated[int | None, typer.Option(help="Print so many messages.", min=1)] = None,
+    timeout: Annotated[float | None, typer.Option(help="Seconds without a message.")] = None,
+) -> None:
+    """Print what ROS 2 nodes publish on a topic, without ROS (needs the extra `dds`)."""
+    from nodes.echo import echo
 
-    parameters = Config.from_yaml(config) if config is not None else Config()
-    changes: dict[str, Any] = {}
-    for assignment in assignments or []:
-        name, separator, text = assignment.partition(":=")
-        if not separator:
-            raise ConfigError(f"--param is {assignment!r}; needed is NAME:=VALUE.")
-        changes[name] = yaml.safe_load(text)
-    return parameters.replace(**changes) if changes else parameters
+    try:
+        echo(
+            topic,
+            count=1 if once else count,
+            timeout_s=timeout,
+            write=lambda text: print(text, flush=True),
+        )
+    except BrokenPipeError:  # `| head` has seen enough
+        sys.stdout = None  # nothing is left to be flushed
 
 
 def _simulate(scene: str, out: Path, seed: int, jpeg: int | None, *, force: bool) -> None:
     from tracker.simulation import load_scene, write_simulation
 
     loaded = load_scene(scene)
-    with bar(_errors, f"Simulating {Path(scene).stem}") as progress:
+    with bar(errors, f"Simulating {Path(scene).stem}") as progress:
         write_simulation(
             loaded,
             out,
@@ -249,21 +246,8 @@ def _simulate(scene: str, out: Path, seed: int, jpeg: int | None, *, force: bool
         )
 
 
-def _print_json(document: Any) -> None:
-    sys.stdout.write(json.dumps(document, indent=2) + "\n")
-
-
-def _print_files(files: tuple[Path, ...]) -> None:
-    for path in files:
-        _console.print(f"wrote {path}", highlight=False, soft_wrap=True)
-
-
-def _complain(text: object) -> None:
-    _errors.print(f"raised-hand: {text}", highlight=False, markup=False, soft_wrap=True)
-
-
 def _fail(error: TrackerError, status: int) -> NoReturn:
-    _complain(error)
+    complain(error)
     sys.exit(status)
 
 

@@ -39,6 +39,7 @@ def complaint(error):
         ("demo",),
         ("replay",),
         ("simulate",),
+        ("monte-carlo",),
         ("models",),
         ("models", "fetch"),
         ("models", "list"),
@@ -107,6 +108,45 @@ def test_a_recording_is_not_overwritten_without_being_told(run, tmp_path):
     assert status == 1
     assert "there.mcap" in complaint(error)
     assert (tmp_path / "there.mcap").read_bytes() == b"precious"
+
+
+def test_monte_carlo_prints_the_scenarios_there_are(run):
+    status, output, _ = run("monte-carlo")
+    assert status == 0
+    assert "model-matched" in output
+    assert "hands-down" in output
+
+
+def test_monte_carlo_tells_what_it_found_and_writes_it(run, tmp_path):
+    status, output, _ = run("monte-carlo", "outliers", "-n", 30, "--out", "study")
+    assert status == 0
+    assert "RMSE / Cramer-Rao bound" in output
+    assert (tmp_path / "study/study.png").stat().st_size > 10_000
+    status, again, _ = run("monte-carlo", "outliers", "-n", 30, "--json")
+    assert status == 0
+    assert json.loads(again) == json.loads((tmp_path / "study/study.json").read_text())
+
+
+def test_monte_carlo_takes_parameters(run):
+    words = ("monte-carlo", "outliers", "-n", 30, "--json")
+    usual = json.loads(run(*words)[1])
+    gaussian = json.loads(run(*words, "-p", "outlier_dof:=0.0")[1])
+    assert gaussian["figures"][1]["value"] > usual["figures"][1]["value"]
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (("moonbase",), "moonbase"),
+        (("people", "-p", "gate_probability:=2.0"), "gate_probability"),
+        (("outliers", "--paths", "x.csv"), "--paths"),
+        (("people", "-n", 1, "--paths", "nowhere.csv"), "nowhere.csv"),
+    ],
+)
+def test_what_monte_carlo_cannot_do_is_one_line_and_status_2(run, words, named):
+    status, _, error = run("monte-carlo", *words)
+    assert status == 2
+    assert named in complaint(error)
 
 
 @pytest.mark.model

@@ -9,7 +9,7 @@ import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.containers import CameraImage, Scan, Truth
-from tracker.errors import RecordingError
+from tracker.errors import RecordingError, ShapeError
 from tracker.geometry import RigidTransform
 from tracker.messages import types
 from tracker.messages.images import bgr_from_compressed, bgr_from_image
@@ -69,7 +69,7 @@ def image_from_compressed(message: Any) -> CameraImage:
 
 def scan_from_message(message: Any) -> Scan:
     """The turn of a sensor_msgs/LaserScan."""
-    return Scan(
+    scan = Scan(
         stamp_ns=stamp_ns(message.header),
         frame_id=message.header.frame_id,
         angle_min_rad=float(message.angle_min),
@@ -78,6 +78,8 @@ def scan_from_message(message: Any) -> Scan:
         range_max_m=float(message.range_max),
         ranges_m=np.array(message.ranges, dtype=np.float64),
     )
+    _check_beams(scan, float(message.angle_max))
+    return scan
 
 
 def camera_from_message(message: Any) -> CameraModel:
@@ -140,6 +142,19 @@ def truth_from_message(message: Any) -> Truth:
 def stamp_ns(header: Any) -> int:
     """The stamp of a std_msgs/Header, in nanoseconds."""
     return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+
+
+def _check_beams(scan: Scan, angle_max_rad: float) -> None:
+    """Angles and ranges must tell of the same turn; drivers differ by a beam at the seam."""
+    came = len(scan.ranges_m)
+    if not came:
+        return
+    said = (angle_max_rad - scan.angle_min_rad) / scan.angle_increment_rad + 1.0
+    if not abs(said - came) <= max(2.0, 0.02 * came):
+        raise ShapeError(
+            f"A scan says {said:.1f} beams from {scan.angle_min_rad:.3f} to {angle_max_rad:.3f} "
+            f"rad and brings {came}; its angles and ranges must agree."
+        )
 
 
 _SINGLE: dict[str, Callable[[Any], Event]] = {

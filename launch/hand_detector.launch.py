@@ -1,0 +1,110 @@
+"""Start the hand detector: `ros2 launch raised_hand_tracker hand_detector.launch.py --show-args`.
+
+Imports nothing of the project, since `ros2 launch` may run in a Python that does not have its
+dependencies.
+"""
+
+import tempfile
+from pathlib import Path
+
+import yaml
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+PACKAGE, NODE_NAME = "raised_hand_tracker", "hand_detector"
+
+#: Topic arguments, the names they replace, and what they carry.
+TOPICS = {
+    "image_topic": ("image_raw", "camera images (with image_transport:=compressed, too)"),
+    "scan_topic": ("scan", "LiDAR scans"),
+    "camera_info_topic": ("camera_info", "camera intrinsics"),
+    "hand_raised_topic": ("hand_raised", "whether a hand is up"),
+    "customer_pose_topic": ("customer_pose", "the selected customer"),
+    "approach_pose_topic": ("~/approach_pose", "where to stand in front of that customer"),
+    "debug_topic": ("hand_detection_debug", "the debug image"),
+}
+
+
+def generate_launch_description():
+    """Arguments, and the node made of them."""
+    share = Path(get_package_share_directory(PACKAGE))
+    arguments = {
+        "params_file": (str(share / "config/hand_detector.yaml"), "ROS parameter file"),
+        "namespace": ("", "Namespace of the node and its topics"),
+        "use_sim_time": ("false", "Take the time from /clock"),
+        "image_transport": ("", "raw or compressed; empty: as the parameter file says"),
+        "lifecycle": ("false", "Start the lifecycle node, unconfigured"),
+        "respawn": ("false", "Start the node again when it ends"),
+        "log_level": ("info", "debug, info, warn, error or fatal"),
+        "rviz": ("false", "Show everything in RViz"),
+        "rviz_config": (str(share / "config/hand_detector.rviz"), "RViz configuration"),
+    } | {name: (default, f"Topic of {meaning}") for name, (default, meaning) in TOPICS.items()}
+    return LaunchDescription(
+        [
+            *(
+                DeclareLaunchArgument(name, default_value=default, description=description)
+                for name, (default, description) in arguments.items()
+            ),
+            OpaqueFunction(function=_hand_detector),
+            Node(
+                package="rviz2",
+                executable="rviz2",
+                arguments=["-d", LaunchConfiguration("rviz_config")],
+                parameters=[{"use_sim_time": LaunchConfiguration("use_sim_time")}],
+                condition=IfCondition(LaunchConfiguration("rviz")),
+            ),
+        ]
+    )
+
+
+def _hand_detector(context):
+    def value_of(name):
+        return LaunchConfiguration(name).perform(context)
+
+    def is_true(name):
+        return value_of(name).lower() in ("true", "1", "yes")
+
+    own = {"use_sim_time": is_true("use_sim_time")}
+    if value_of("image_transport"):
+        own["image_transport"] = value_of("image_transport")
+    remappings = [(default, value_of(name)) for name, (default, _) in TOPICS.items()]
+    # The compressed topic hangs below the raw one, and has to be remapped on its own.
+    remappings.append(("image_raw/compressed", value_of("image_topic") + "/compressed"))
+    return [
+        Node(
+            package=PACKAGE,
+            executable="lifecycle_hand_detector" if is_true("lifecycle") else "hand_detector",
+            name=NODE_NAME,
+            namespace=value_of("namespace"),
+            parameters=[_for_every_namespace(value_of("params_file")), own],
+            remappings=[(old, new) for old, new in remappings if old != new],
+            ros_arguments=["--log-level", value_of("log_level")],
+            respawn=is_true("respawn"),
+            output="screen",
+        )
+    ]
+
+
+def _for_every_namespace(params_file):
+    """The same parameters for a node of any full name.
+
+    ROS takes `hand_detector:` in a file for `/hand_detector` alone and would silently pass over
+    the whole file once the node is in a namespace.
+    """
+    document = yaml.safe_load(Path(params_file).read_text(encoding="utf-8")) or {}
+    parameters = {}
+    for name in ("**", "/**", f"/{NODE_NAME}", NODE_NAME):
+        parameters.update((document.get(name) or {}).get("ros__parameters") or {})
+    if not parameters:
+        raise RuntimeError(
+            f"{params_file} holds no parameters; needed is `{NODE_NAME}:` with `ros__parameters:`."
+        )
+    with tempfile.NamedTemporaryFile(
+        "w", prefix="hand_detector_", suffix=".yaml", delete=False, encoding="utf-8"
+    ) as file:
+        yaml.safe_dump({"/**": {"ros__parameters": parameters}}, file)
+    return file.name

@@ -1,0 +1,367 @@
+"""Everything that both nodes share: bytes in, `tracker.Pipeline` in one worker thread, bytes out.
+
+Callbacks only store. The worker decodes, waits for transforms and runs the models; it alone
+touches the pipeline, so orders from outside (release, reset, configure) wait for their turn.
+Nothing here knows rclpy or Cyclone DDS.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+
+from nodes.diagnostics import WARN, Diagnostics, encode_statuses
+from nodes.fault_log import FaultLog
+from nodes.header_peek import peek_header
+from nodes.image_gate import ImageGate, Verdict
+from nodes.inbox import IMAGES_KEPT, Inbox, WaitingImage
+from nodes.outputs import HasSubscribers, Publish, publish_answer, publish_nobody, publish_views
+from nodes.stamp_watch import StampWatch, Step
+from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
+from tracker.camera import CameraModel
+from tracker.config import Config
+from tracker.containers import CameraImage, FrameResult, Scan
+from tracker.errors import TrackerError
+from tracker.messages import Encoded, decode
+from tracker.perception.detector import HandDetector
+from tracker.pipeline import Pipeline
+from tracker.transforms import StampedTransform, Transforms
+
+#: Tells a text to the user; levels are "info", "warning" and "error".
+Log = Callable[[str, str], None]
+
+#: A waiting image is looked at again this often, should nothing wake the worker.
+_PATIENCE_STEP_S = 0.05
+#: Images that a worker may catch up with after it was held up, the share of a period that an image
+#: may take on average for that, and over how many images the average goes.
+_CATCH_UP, _KEEPS_UP, _BUSY_IMAGES = 3, 0.8, 10
+#: Transforms of one frame come in any order within this; a step beyond the other is no slow robot.
+_TRANSFORM_BACK_NS, _TRANSFORM_AHEAD_NS = 1_000_000_000, 3_600_000_000_000
+_FRAMES_WATCHED = 1000
+#: A robot's drivers start with the node; what is missing is worth a word in the log after this.
+_SETTLED_NS = 5_000_000_000
+#: How long `stop` waits for the frame at hand.
+_STOP_S = 10.0
+
+
+class NodeCore:
+    """The node without its wire.
+
+    `start` it, hand every message to `receive`, publish `diagnostics` once in
+    `diagnostics.REPORT_PERIOD_S`, and `stop` it. All methods may be called from any thread and
+    return at once, except `stop`.
+
+    Args:
+        config: Every parameter.
+        publish: Hands a message to the wire; called by the worker, and by who calls `diagnose`.
+        has_subscribers: Whether anybody listens to an output.
+        log: Tells the user something.
+        now_ns: The node's clock, simulated or not: the one of the stamps.
+        detector: Finds hands; by default MediaPipe's models.
+        transforms: By default a buffer of the project's own, filled by `receive`. A shell that
+            passes another one (around tf2's) fills it itself and calls `heard_transforms`.
+        topic_names: Where each input is listened to, for words; by default the unmapped names.
+        steady_ns: A clock that never jumps.
+
+    Raises:
+        ModelFileError: The hand models are not there.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        *,
+        publish: Publish,
+        has_subscribers: HasSubscribers,
+        log: Log,
+        now_ns: Callable[[], int],
+        detector: HandDetector | None = None,
+        transforms: Transforms | None = None,
+        topic_names: Mapping[Input, str] | None = None,
+        steady_ns: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
+        self._publish, self._has_subscribers = publish, has_subscribers
+        self._log, self._now_ns, self._steady_ns = log, now_ns, steady_ns
+        self._config = config
+        self._pipeline = Pipeline(config, detector, transforms)
+        self._inbox = Inbox()
+        self._gate_lock = threading.Lock()
+        self._gate = ImageGate(config.processing_rate)
+        names = {item: topic.name for item, topic in INPUT_TOPICS.items()}
+        names[Input.IMAGES] = IMAGE_TOPICS[config.image_transport].name
+        self._diagnostics = Diagnostics(steady_ns, names | dict(topic_names or {}))
+        self._faults = FaultLog(lambda text: log("warning", text), steady_ns)
+        self._remarks = FaultLog(lambda text: log("info", text), steady_ns)
+        self._transform_watches: dict[str, StampWatch] = {}
+        self._transforms_until_ns: int | None = None
+        self._busy_s = 0.0
+        self._began_ns = steady_ns()
+        self._is_enabled = True
+        self._last: FrameResult | None = None
+        self._worker = threading.Thread(target=self._work, name="hand_detector", daemon=True)
+        log("info", _greeting(config))
+
+    @property
+    def config(self) -> Config:
+        """The parameters in force, or about to be."""
+        return self._config
+
+    @property
+    def is_enabled(self) -> bool:
+        """Whether images are processed."""
+        return self._is_enabled
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the worker runs; it ends by `stop`, or by a mistake of ours that it prints."""
+        return self._worker.is_alive()
+
+    def start(self) -> None:
+        """Begin to work."""
+        self._worker.start()
+
+    def stop(self) -> None:
+        """Finish the frame at hand, take back what was published, and end the worker."""
+        self._inbox.close()
+        if self._worker.is_alive():
+            self._worker.join(_STOP_S)
+
+    def receive(self, item: Input, message: Encoded) -> None:
+        """Store what has come on the wire."""
+        self._diagnostics.heard(item)
+        if item is Input.IMAGES:
+            self._receive_image(message)
+        else:
+            self._inbox.put(item, message)
+
+    def heard_transforms(self, *, is_static: bool = False) -> None:
+        """Transforms have come to a buffer that the shell fills itself."""
+        self._diagnostics.heard(Input.STATIC_TRANSFORMS if is_static else Input.TRANSFORMS)
+        self._inbox.wake()
+
+    def enable(self, is_enabled: bool) -> str:
+        """Process images from now on, or leave them and forget everybody.
+
+        Returns:
+            What happened, in words.
+        """
+        was_enabled, self._is_enabled = self._is_enabled, is_enabled
+        if was_enabled and not is_enabled:
+            self._inbox.order(self._forget_everybody)
+        words = "enabled" if is_enabled else "disabled"
+        return words if was_enabled != is_enabled else f"already {words}"
+
+    def release(self) -> tuple[bool, str]:
+        """Let the selected customer go; the next one is selected with the next image.
+
+        Returns:
+            Whether anybody was selected, and what happened, in words.
+        """
+        chosen = self._last.tracks.selected_id if self._last is not None else None
+        self._inbox.order(self._release)
+        if chosen is None:
+            return False, "nobody is selected"
+        return True, f"customer {chosen} is released"
+
+    def reset(self, reason: str) -> None:
+        """Forget people, scans and moving transforms, as after a jump of the clock.
+
+        Args:
+            reason: Why, for the log.
+        """
+        self._inbox.order(lambda: self._reset(reason))
+
+    def configure(self, config: Config) -> None:
+        """Change parameters while running; only those that are `live` take effect."""
+        with self._gate_lock:
+            if config.processing_rate != self._config.processing_rate:
+                self._gate.set_rate(config.processing_rate)
+            self._config = config
+        self._inbox.order(lambda: self._pipeline.configure(config))
+
+    def refuse(self, item: Input, text: str) -> None:
+        """Count something that came and makes no sense, and say so once in a while."""
+        self._diagnostics.malformed(item, text)
+        self._faults.add(item.value, text)
+
+    def diagnose(self) -> None:
+        """Publish how the node is doing."""
+        statuses = self._diagnostics.report(
+            self._config,
+            type(self._pipeline.detector).__name__,
+            is_enabled=self._is_enabled,
+            lost=self._inbox.lost,
+        )
+        if self._steady_ns() - self._began_ns >= _SETTLED_NS:
+            for status in statuses:
+                if status.level >= WARN and status.is_news:
+                    self._faults.add(status.name, status.message)
+        self._publish(Output.DIAGNOSTICS, encode_statuses(statuses, max(self._now_ns(), 0)))
+
+    def _receive_image(self, message: Encoded) -> None:
+        if not self._is_enabled:
+            return
+        try:
+            header = peek_header(message.cdr)
+        except TrackerError as error:
+            self.refuse(Input.IMAGES, str(error))
+            return
+        with self._gate_lock:
+            verdict = self._gate.judge(header.stamp_ns)
+        stamp_s = header.stamp_ns / 1e9
+        if verdict is Verdict.REPEATED:
+            self.refuse(
+                Input.IMAGES,
+                f"the stamp {stamp_s:.3f} s came twice; does the driver fill in header.stamp?",
+            )
+        elif verdict is Verdict.ODD:
+            self.refuse(
+                Input.IMAGES,
+                f"the stamp {stamp_s:.3f} s is far from the one before; the image is passed over, "
+                "and the new time believed if the next image agrees",
+            )
+        if verdict is Verdict.JUMPED_BACK:
+            self._inbox.drop_images()  # those are of the time before
+        if verdict in (Verdict.ADMITTED, Verdict.JUMPED_BACK):
+            self._inbox.put_image(WaitingImage(message, *header, self._steady_ns()))
+
+    def _work(self) -> None:
+        was_busy = False
+        while self._inbox.wait(_PATIENCE_STEP_S if self._inbox.images_waiting else None):
+            self._catch_up()
+            images = self._inbox.take_images(self._is_ready, at_most=self._backlog(was_busy))
+            for image in images:
+                self._process(image)
+                self._catch_up()
+            was_busy = bool(images)
+            if was_busy:
+                self._inbox.wake()
+        if self._last is not None and self._last.hand_raised:
+            self._forget_everybody()
+
+    def _backlog(self, was_busy: bool) -> int:
+        """How many images that are ready are worth processing; of more, the newest count.
+
+        What one transform has set free is processed in order, and so is what little came while
+        something else had the processor. A worker that is too slow for `processing_rate` takes
+        the newest only: it must not run behind its time.
+        """
+        if not was_busy:
+            return IMAGES_KEPT
+        can_keep_up = self._busy_s < _KEEPS_UP / self._config.processing_rate
+        return _CATCH_UP if can_keep_up else 1
+
+    def _catch_up(self) -> None:
+        """Follow the orders and take in what has come, except images."""
+        delivery = self._inbox.take()
+        for order in delivery.orders:
+            order()
+        for item, message in delivery.messages:
+            self._take_in(item, message)
+
+    def _take_in(self, item: Input, message: Encoded) -> None:
+        is_static = item is Input.STATIC_TRANSFORMS
+        try:
+            for event in decode(message.type_name, message.cdr, is_static=is_static):
+                if isinstance(event, Scan):
+                    self._pipeline.add_scan(event)
+                elif isinstance(event, CameraModel):
+                    self._pipeline.set_camera(event)
+                elif isinstance(event, StampedTransform) and self._is_timely(event):
+                    self._pipeline.add_transform(event)
+        except TrackerError as error:
+            self.refuse(item, str(error))
+
+    def _is_timely(self, sample: StampedTransform) -> bool:
+        """Keep a single absurd stamp out of the buffer, where it would outdate all others."""
+        if sample.is_static:
+            return True
+        if len(self._transform_watches) > _FRAMES_WATCHED:  # somebody invents names
+            self._transform_watches.clear()
+        watch = self._transform_watches.setdefault(
+            sample.child,
+            StampWatch(_TRANSFORM_BACK_NS, _TRANSFORM_AHEAD_NS, self._transforms_until_ns),
+        )
+        step = watch.judge(sample.stamp_ns)
+        if step is Step.ODD:
+            self.refuse(
+                Input.TRANSFORMS,
+                f"the stamp {sample.stamp_ns / 1e9:.3f} s of {sample.child!r} is far from the one "
+                "before; the new time is believed if the next one agrees",
+            )
+        elif step is Step.JUMPED_BACK:
+            self._pipeline.transforms.forget_after(sample.stamp_ns)
+        if step is Step.ODD:
+            return False
+        self._transforms_until_ns = sample.stamp_ns
+        return True
+
+    def _is_ready(self, image: WaitingImage) -> bool:
+        """Whether the transform of its stamp is there, or it has waited long enough for it."""
+        waited_s = (self._steady_ns() - image.arrived_ns) / 1e9
+        if waited_s >= self._config.transform_wait_s or not self._diagnostics.is_hopeful():
+            return True
+        return self._pipeline.transforms.can_lookup(
+            self._config.fixed_frame, self._config.camera_frame or image.frame_id, image.stamp_ns
+        )
+
+    def _process(self, waiting: WaitingImage) -> None:
+        began_ns = self._steady_ns()
+        try:
+            (image,) = decode(*waiting.message)
+            assert isinstance(image, CameraImage), "the shell subscribes to images only"
+            result = self._pipeline.process(image)
+        except TrackerError as error:
+            self.refuse(Input.IMAGES, str(error))
+            return
+        self._last = result
+        publish_answer(result, self._publish)
+        latency_s = (self._now_ns() - result.stamp_ns) / 1e9
+        busy_s = (self._steady_ns() - began_ns) / 1e9
+        self._busy_s += (busy_s - self._busy_s) / _BUSY_IMAGES
+        self._diagnostics.processed(result, latency_s, busy_s)
+        publish_views(image, result, self._config, self._publish, self._has_subscribers)
+        for note in result.notes:
+            if note.startswith("stamps jumped back"):
+                self._note_reset(note)
+            else:
+                self._remarks.add(Input.IMAGES.value, note)
+
+    def _release(self) -> None:
+        self._pipeline.tracker.selector.release()
+
+    def _reset(self, reason: str) -> None:
+        self._inbox.drop_images()
+        with self._gate_lock:
+            self._gate.reset()
+        self._pipeline.reset()
+        self._note_reset(reason)
+
+    def _forget_everybody(self) -> None:
+        self._inbox.drop_images()
+        with self._gate_lock:
+            self._gate.reset()
+        self._pipeline.tracker.reset()
+        self._pipeline.detector.reset()
+        stamp_ns = self._last.stamp_ns if self._last is not None else 0
+        self._last = None
+        publish_nobody(stamp_ns, self._config, self._publish, self._has_subscribers)
+
+    def _note_reset(self, reason: str) -> None:
+        self._diagnostics.resets += 1
+        self._log("warning", f"Everybody is forgotten: {reason}.")
+
+
+def _greeting(config: Config) -> str:
+    if config.raise_rule == "palm":
+        rule = f"palm: up from {config.palm_raised_threshold:g} palm lengths, at any distance"
+    else:
+        rule = (
+            f"image: up from {config.hand_raised_threshold:g} image heights, a hand spread over "
+            f"{config.hand_span_threshold:g} image widths; up to about 0.7 m"
+        )
+    return (
+        f"{config.processing_rate:g} Hz, model_complexity {config.model_complexity}, raise rule "
+        f"{rule}; customers in the frame {config.fixed_frame!r}."
+    )

@@ -1,0 +1,24 @@
+"""A ROS 2 node without ROS: Cyclone DDS with the wire format of ROS 2.
+
+environment   which domain, and how far discovery reaches (the variables ROS 2 reads)
+names         ~/topic, namespaces, remapping; how DDS names topics and types
+profiles      quality of service
+raw           serialized messages straight through Cyclone DDS, which has no call for it
+services      requests and replies, and the types they carry
+node          the whole: publishers, subscriptions, services, and a place in ROS 2's graph
+"""
+
+from tracker.errors import ConfigError
+
+try:
+    import cyclonedds  # noqa: F401  # is it there at all?
+except ModuleNotFoundError as missing:
+    raise ConfigError(
+        "Cyclone DDS is not installed; needed is the extra `dds`: "
+        "pip install 'raised-hand-tracker[dds]'."
+    ) from missing
+
+from nodes.dds.names import Names
+from nodes.dds.node import Node, Publisher
+
+__all__ = ["Names", "Node", "Publisher"]

@@ -1,0 +1,297 @@
+"""The command `raised-hand-dds`: the node `hand_detector` on Cyclone DDS, without ROS.
+
+The same topics, services, parameters and diagnostics as the rclpy node; ROS 2's tools on the
+network see one of theirs.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+import typer
+import yaml
+
+from nodes.core import NodeCore
+from nodes.dds.node import Node
+from nodes.dds.parameters import ParameterServer
+from nodes.dds.profiles import CLOCK, ROSOUT
+from nodes.diagnostics import REPORT_PERIOD_S
+from nodes.qos import PROFILES
+from nodes.topics import (
+    ENABLE_SERVICE,
+    IMAGE_TOPICS,
+    INPUT_TOPICS,
+    OUTPUT_TYPES,
+    RELEASE_SERVICE,
+    RESET_SERVICE,
+    Input,
+    InputTopic,
+)
+from tracker.config import NODE_NAME, Config
+from tracker.errors import ConfigError, TrackerError
+from tracker.messages import Encoded
+from tracker.messages.encode import header
+from tracker.messages.types import build, deserialize, serialize
+
+_LOG_TYPE = "rcl_interfaces/msg/Log"
+_CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+_LEVELS = {"info": 20, "warning": 30, "error": 40}
+
+
+class DdsHandDetector:
+    """The node: a `NodeCore` on a `Node`.
+
+    Args:
+        config: Every parameter.
+        namespace: The node's.
+        remaps: Rules `from:=to`.
+        use_sim_time: Take the time from /clock.
+
+    Raises:
+        ConfigError: A name or a variable of the environment is none, or DDS cannot start.
+        ModelFileError: The hand models are not there.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        *,
+        namespace: str = "/",
+        remaps: Iterable[str] = (),
+        use_sim_time: bool = False,
+    ) -> None:
+        self._sim_ns = 0
+        self._use_sim_time = use_sim_time
+        self._node = Node(
+            NODE_NAME,
+            namespace=namespace,
+            remaps=remaps,
+            complain=lambda text: self._log("warning", text),
+        )
+        self._rosout = self._node.publisher("/rosout", _LOG_TYPE, ROSOUT)
+        self._publishers = {
+            output: self._node.publisher(output.value, type_name, PROFILES[output])
+            for output, type_name in OUTPUT_TYPES.items()
+        }
+        inputs = {Input.IMAGES: IMAGE_TOPICS[config.image_transport], **INPUT_TOPICS}
+        self._core = NodeCore(
+            config,
+            publish=lambda output, message: self._publishers[output].publish(message.cdr),
+            has_subscribers=lambda output: self._publishers[output].subscribers > 0,
+            log=self._log,
+            now_ns=self._now_ns,
+            topic_names={
+                item: self._node.names.resolve(topic.name) for item, topic in inputs.items()
+            },
+        )
+        for item, topic in inputs.items():
+            self._subscribe(item, topic)
+        if use_sim_time:
+            self._node.subscribe("/clock", _CLOCK_TYPE, self._take_clock, CLOCK)
+        self._serve()
+        ParameterServer(
+            self._node,
+            lambda: self._core.config,
+            self._core.configure,
+            use_sim_time=use_sim_time,
+            now_ns=self._now_ns,
+        )
+        self._spinner = threading.Thread(target=self._node.spin, name="dds", daemon=True)
+
+    def run(self, stop: threading.Event) -> bool:
+        """Work until `stop` is set, then leave in order.
+
+        Returns:
+            Whether all went well; else a thread died by a mistake that it has printed.
+        """
+        self._core.start()
+        self._spinner.start()
+        self._log("info", f"{self._node.names.full_node_name} is up, without ROS.")
+        went_well = True
+        while went_well and not stop.wait(REPORT_PERIOD_S):
+            self._core.diagnose()
+            went_well = self._core.is_alive and self._spinner.is_alive()
+        self._core.stop()
+        self._node.stop()
+        self._spinner.join()
+        self._node.close()
+        return went_well
+
+    def _subscribe(self, item: Input, topic: InputTopic) -> None:
+        def take(cdr: bytes) -> None:
+            self._core.receive(item, Encoded(topic.type_name, cdr))
+
+        self._node.subscribe(topic.name, topic.type_name, take, PROFILES[item])
+
+    def _serve(self) -> None:
+        def release(_: Any) -> Any:
+            success, message = self._core.release()
+            return _trigger(success, message)
+
+        def reset(_: Any) -> Any:
+            self._core.reset("asked to")
+            return _trigger(True, "everybody is forgotten")
+
+        def enable(request: Any) -> Any:
+            message = self._core.enable(bool(request.data))
+            return build("std_srvs/srv/SetBool_Response", success=True, message=message)
+
+        self._node.serve(*RELEASE_SERVICE, release)
+        self._node.serve(*RESET_SERVICE, reset)
+        self._node.serve(*ENABLE_SERVICE, enable)
+
+    def _now_ns(self) -> int:
+        return self._sim_ns if self._use_sim_time else time.time_ns()
+
+    def _take_clock(self, cdr: bytes) -> None:
+        try:
+            now = deserialize(_CLOCK_TYPE, cdr).clock
+        except TrackerError:  # the next one comes at once
+            return
+        before_ns, self._sim_ns = self._sim_ns, now.sec * 1_000_000_000 + now.nanosec
+        if self._sim_ns < before_ns:
+            self._core.reset(f"/clock jumped back by {(before_ns - self._sim_ns) / 1e9:.3f} s")
+
+    def _log(self, level: str, text: str) -> None:
+        now_ns = time.time_ns()
+        name = self._node.names.full_node_name.lstrip("/").replace("/", ".")
+        print(f"[{level.upper()}] [{now_ns / 1e9:.3f}] [{name}]: {text}", file=sys.stderr)
+        said = build(
+            _LOG_TYPE,
+            stamp=header(now_ns, "").stamp,
+            level=_LEVELS[level],
+            name=name,
+            msg=text,
+        )
+        self._rosout.publish(serialize(said).cdr)
+
+
+def command(
+    params_file: Annotated[
+        Path | None,
+        typer.Option("--params-file", help="ROS parameter file, as config/hand_detector.yaml."),
+    ] = None,
+    param: Annotated[
+        list[str] | None,
+        typer.Option("--param", "-p", help="One parameter, as -p processing_rate:=8.0."),
+    ] = None,
+    remap: Annotated[
+        list[str] | None,
+        typer.Option("--remap", "-r", help="One name, as -r image_raw:=/camera/image_raw."),
+    ] = None,
+    namespace: Annotated[str, typer.Option(help="Of the node and its relative names.")] = "/",
+    use_sim_time: Annotated[bool, typer.Option(help="Take the time from /clock.")] = False,
+    ros_args: Annotated[
+        bool, typer.Option("--ros-args", help="Understood and not needed.")
+    ] = False,
+) -> None:
+    """Run the node `hand_detector` without ROS: cameras and scanners in, customers out.
+
+    Listens to image_raw (sensor_msgs/Image; CompressedImage with -p image_transport:=compressed),
+    scan, camera_info, /tf and /tf_static. Publishes hand_raised, customer_pose,
+    hand_detection_debug, ~/tracks, ~/markers, ~/approach_pose and /diagnostics; answers
+    ~/release_customer, ~/enable, ~/reset and ROS 2's parameter services.
+
+    Other nodes, with ROS or without, are met as ROS 2 does: by ROS_DOMAIN_ID,
+    ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and CYCLONEDDS_URI.
+
+    To try it on one machine, in three terminals: raised-hand-dds; raised-hand play recording.mcap;
+    raised-hand echo /hand_raised.
+    """
+    from rich.console import Console
+
+    from tracker.cli_progress import fetch_models_if_needed
+
+    config, in_file = Config(), False
+    if params_file is not None:
+        config, in_file = Config.from_yaml(params_file), _sim_time_in(params_file)
+    changes = _assignments(param or [])
+    sim_time = changes.pop("use_sim_time", use_sim_time or in_file)
+    if not isinstance(sim_time, bool):
+        raise ConfigError(f"`use_sim_time` is {sim_time!r}; allowed is true or false.")
+    config = config.replace(**changes)
+    fetch_models_if_needed(Console(stderr=True))
+    with _stop_signals() as stop:
+        node = DdsHandDetector(
+            config, namespace=namespace, remaps=remap or (), use_sim_time=sim_time
+        )
+        if not node.run(stop):
+            sys.exit(1)
+
+
+def main() -> NoReturn:
+    """Run the command; every foreseen failure is one line and a status, as of `raised-hand`."""
+    try:
+        _app()
+    except ConfigError as error:
+        _fail(error, 2)
+    except TrackerError as error:
+        _fail(error, 1)
+    sys.exit(0)
+
+
+_app = typer.Typer(
+    name="raised-hand-dds",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+_app.command()(command)
+
+
+@contextmanager
+def _stop_signals() -> Iterator[threading.Event]:
+    """An event that Ctrl-C and a service manager's SIGTERM set."""
+    stop = threading.Event()
+    before = {
+        number: signal.signal(number, lambda *_: stop.set())
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _assignments(texts: list[str]) -> dict[str, Any]:
+    changes = {}
+    for text in texts:
+        name, separator, value = text.partition(":=")
+        if not separator:
+            raise ConfigError(f"-p is {text!r}; needed is NAME:=VALUE.")
+        try:
+            changes[name] = yaml.safe_load(value)
+        except yaml.YAMLError as error:
+            raise ConfigError(f"-p is {text!r}; its value is no YAML.") from error
+    return changes
+
+
+def _sim_time_in(params_file: Path) -> bool:
+    """Whether a parameter file, checked before, asks for simulated time."""
+    document = yaml.safe_load(params_file.read_text(encoding="utf-8"))
+    found = False
+    for name in ("**", "/**", f"/{NODE_NAME}", NODE_NAME):
+        section = document.get(name) or {}
+        found = bool(section.get("ros__parameters", {}).get("use_sim_time", found))
+    return found
+
+
+def _trigger(success: bool, message: str) -> Any:
+    return build("std_srvs/srv/Trigger_Response", success=success, message=message)
+
+
+def _fail(error: TrackerError, status: int) -> NoReturn:
+    print(f"raised-hand-dds: {error}", file=sys.stderr)
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()

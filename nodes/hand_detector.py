@@ -1,0 +1,87 @@
+"""The robot's node `hand_detector` on ROS 2: a thin shell over `NodeCore`."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from collections.abc import Callable
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from nodes.ros_wiring import RosWiring, declare_parameters
+from tracker.config import NODE_NAME
+from tracker.errors import ConfigError, TrackerError
+
+
+class HandDetector(Node):
+    """Who raises a hand, and where; see docs/ros.md for topics, services and parameters.
+
+    Raises:
+        ConfigError: A parameter is unknown or out of range.
+        ModelFileError: The hand models are not there.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True)
+        self._wiring = RosWiring(self, declare_parameters(self))
+        self._wiring.listen()
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the node still works; False after a mistake of ours."""
+        return self._wiring.core.is_alive
+
+    def close(self) -> None:
+        """Stop working, and take back a raised hand that is latched."""
+        self._wiring.close()
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until Ctrl-C.
+
+    Returns:
+        Exit status: 0, 1 if it failed, 2 if a parameter was off.
+    """
+    return run(HandDetector, args)
+
+
+def run(make_node: Callable[[], HandDetector], args: list[str] | None = None) -> int:
+    """Spin a node until SIGINT or SIGTERM, and end it in order.
+
+    The executor has a thread of its own, and this one waits for signals, so that Ctrl-C is heard
+    at once and the last messages can still be published.
+    """
+    is_over = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: is_over.set())
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        return _spin(make_node, is_over)
+    except TrackerError as error:
+        print(error, file=sys.stderr)
+        return 2 if isinstance(error, ConfigError) else 1
+    finally:
+        rclpy.try_shutdown()
+
+
+def _spin(make_node: Callable[[], HandDetector], is_over: threading.Event) -> int:
+    node = make_node()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    spinning = threading.Thread(target=executor.spin, name="executor")
+    spinning.start()
+    while not is_over.wait(0.5) and node.is_alive and spinning.is_alive():
+        pass
+    executor.shutdown()
+    spinning.join()
+    node.close()
+    node.destroy_node()
+    return 0 if is_over.is_set() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,88 @@
+"""The same node with a managed life: configure loads the models, activate listens."""
+
+from __future__ import annotations
+
+import sys
+
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+
+from nodes.hand_detector import run
+from nodes.ros_wiring import RosWiring, declare_parameters
+from tracker.config import NODE_NAME
+from tracker.errors import TrackerError
+
+
+class LifecycleHandDetector(LifecycleNode):
+    """`HandDetector` for lifecycle managers such as Nav2's.
+
+    rclpy manages publishers only, so subscriptions are made on activation and taken down on
+    deactivation; a raised hand is taken back then.
+
+    Raises:
+        ConfigError: A parameter is unknown or out of range.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True)
+        self._config = declare_parameters(self)
+        self._wiring: RosWiring | None = None
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the node still works; False after a mistake of ours."""
+        return self._wiring is None or self._wiring.core.is_alive
+
+    def close(self) -> None:
+        """Stop working, in whatever state."""
+        if self._wiring is not None:
+            self._config = self._wiring.core.config
+            self._wiring.close()
+            self._wiring = None
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Load the models."""
+        try:
+            self._wiring = RosWiring(self, self._config)
+        except TrackerError as error:
+            self.get_logger().error(str(error))
+            return TransitionCallbackReturn.FAILURE
+        self._wiring.core.enable(False)
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Listen, and process images."""
+        assert self._wiring is not None, "configured before"
+        self._wiring.listen()
+        self._wiring.core.enable(True)
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Rest; the models stay loaded."""
+        assert self._wiring is not None, "configured before"
+        self._wiring.stop_listening()
+        self._wiring.core.enable(False)
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Let the models go."""
+        self.close()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """End, from any state."""
+        self.close()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Go back to the beginning."""
+        self.close()
+        return TransitionCallbackReturn.SUCCESS
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the lifecycle node until Ctrl-C; returns as `nodes.hand_detector.main`."""
+    return run(LifecycleHandDetector, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

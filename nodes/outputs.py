@@ -1,0 +1,60 @@
+"""What is published for a processed image, and in which order?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from nodes.topics import Output
+from tracker.config import Config
+from tracker.containers import CameraImage, FrameResult, Tracks
+from tracker.messages import Encoded, encode, encode_markers
+from tracker.perception.drawing import draw_debug_image
+
+#: Hands a message to the wire.
+Publish = Callable[[Output, Encoded], None]
+#: Whether anybody listens; drawing for nobody costs more than ranging and tracking together.
+HasSubscribers = Callable[[Output], bool]
+
+
+def publish_answer(result: FrameResult, publish: Publish) -> None:
+    """The poses, then the Bool: who acts on the Bool finds the pose of the same image there."""
+    if result.customer_pose is not None:
+        publish(Output.CUSTOMER_POSE, encode(result.customer_pose))
+    if result.approach_pose is not None:
+        publish(Output.APPROACH_POSE, encode(result.approach_pose))
+    publish(Output.HAND_RAISED, encode(result.hand_raised))
+
+
+def publish_views(
+    image: CameraImage,
+    result: FrameResult,
+    config: Config,
+    publish: Publish,
+    has_subscribers: HasSubscribers,
+) -> None:
+    """Confirmed customers as detections and markers, and the debug image, for who listens.
+
+    All of them bear the image's own stamp.
+    """
+    frame_id, confirmed = config.fixed_frame, result.tracks[result.tracks.confirmed]
+    if has_subscribers(Output.TRACKS):
+        publish(Output.TRACKS, encode(confirmed, frame_id=frame_id))
+    if has_subscribers(Output.MARKERS):
+        approach = result.approach_pose
+        publish(Output.MARKERS, encode_markers(confirmed, frame_id=frame_id, approach=approach))
+    if has_subscribers(Output.DEBUG_IMAGE):
+        picture = draw_debug_image(image, result.hands, result.tracks, config)
+        debug = CameraImage(result.stamp_ns, image.frame_id, picture)
+        publish(Output.DEBUG_IMAGE, encode(debug))
+
+
+def publish_nobody(
+    stamp_ns: int, config: Config, publish: Publish, has_subscribers: HasSubscribers
+) -> None:
+    """Take everything back, so that no raised hand stays latched when nobody looks any more."""
+    publish(Output.HAND_RAISED, encode(False))
+    nobody = Tracks.none(stamp_ns)
+    if has_subscribers(Output.TRACKS):
+        publish(Output.TRACKS, encode(nobody, frame_id=config.fixed_frame))
+    if has_subscribers(Output.MARKERS):
+        publish(Output.MARKERS, encode_markers(nobody, frame_id=config.fixed_frame))

@@ -1,0 +1,97 @@
+"""What does ROS say of each parameter? Descriptors and checks, all from the one Config.
+
+No ROS import: the shells turn a `Descriptor` into rcl_interfaces' messages.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from tracker.config import Config, allowed_values, parameter_extra
+from tracker.errors import ConfigError
+
+#: Parameters of every ROS node, which are none of ours.
+ROS_OWN = ("use_sim_time", "start_type_description_service")
+ROS_OWN_PREFIXES = ("qos_overrides.",)
+
+
+class Descriptor(NamedTuple):
+    """What `ros2 param describe` shows of a parameter.
+
+    Attributes:
+        name: As in the YAML file.
+        default: Of type bool, int, float or str.
+        description: Its meaning, with the unit.
+        constraints: What it may be, in words.
+        is_read_only: Needs a new start of the node.
+        minimum: Inclusive, as ROS has it; where the bound itself is not allowed, the check says.
+        maximum: The same.
+    """
+
+    name: str
+    default: bool | int | float | str
+    description: str
+    constraints: str
+    is_read_only: bool
+    minimum: float | None
+    maximum: float | None
+
+
+def descriptors() -> list[Descriptor]:
+    """One for each parameter, in the order of the YAML file."""
+    return [_descriptor(name) for name in Config.model_fields]
+
+
+def changed(config: Config, changes: dict[str, Any]) -> Config:
+    """The configuration with parameters set while the node runs.
+
+    Args:
+        config: The one in force.
+        changes: New values by name; ROS's own parameters are passed over.
+
+    Raises:
+        ConfigError: A value is refused, or the parameter cannot change while the node runs.
+    """
+    ours = {name: value for name, value in changes.items() if is_ours(name)}
+    fixed = [
+        name
+        for name, value in ours.items()
+        if name in Config.model_fields
+        and not parameter_extra(name)["live"]
+        and value != getattr(config, name)
+    ]
+    if fixed:
+        raise ConfigError(
+            f"{', '.join(f'`{name}`' for name in fixed)} cannot change while the node runs; "
+            "start it anew with the new value."
+        )
+    return config.replace(**ours) if ours else config
+
+
+def is_ours(name: str) -> bool:
+    """Whether a parameter is the tracker's, rather than of every ROS node."""
+    return name not in ROS_OWN and not name.startswith(ROS_OWN_PREFIXES)
+
+
+def _descriptor(name: str) -> Descriptor:
+    info, extra = Config.model_fields[name], parameter_extra(name)
+    return Descriptor(
+        name=name,
+        default=info.default,
+        description=f"{info.description} [{extra['unit']}]"
+        if extra["unit"]
+        else info.description or "",
+        constraints=allowed_values(name),
+        is_read_only=not extra["live"],
+        minimum=_bound(info.metadata, "gt", "ge"),
+        maximum=_bound(info.metadata, "lt", "le"),
+    )
+
+
+def _bound(metadata: list[Any], *attributes: str) -> float | None:
+    for item in metadata:
+        for attribute in attributes:
+            value = getattr(item, attribute, None)
+            if value is not None:
+                return float(value)
+    return None

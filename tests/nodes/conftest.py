@@ -1,0 +1,139 @@
+"""A core on a wire of its own: what is published is kept, time stands still until told."""
+
+import threading
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from nodes.core import NodeCore
+from nodes.topics import Input, Output
+from tracker import CameraImage, Config, Hands, Scan
+from tracker.geometry import RigidTransform
+from tracker.messages import encode
+from tracker.messages.types import deserialize
+from tracker.transforms import StampedTransform
+
+START_NS = 1_000_000_000_000
+FRAME_NS = 33_333_333
+
+
+class OneRaisedHand:
+    """A detector that always sees one raised hand ahead; it can be held up."""
+
+    def __init__(self):
+        self.stamps_ns = []
+        self.resets = 0
+        self.may_run = threading.Event()
+        self.may_run.set()
+
+    def find(self, image):
+        self.may_run.wait(10.0)
+        self.stamps_ns.append(image.stamp_ns)
+        landmarks = np.full((1, 21, 2), (320.0, 240.0))  # straight ahead
+        landmarks[:, 12, 1] -= 60.0
+        one = np.ones(1)
+        return Hands(landmarks, one, one, one.astype(bool), one)
+
+    def reset(self):
+        self.resets += 1
+
+    def configure(self, config):
+        pass
+
+
+class Wire:
+    """Everything a core says, and short words to speak to it."""
+
+    def __init__(self, config, **more):
+        self.published, self.logged = [], []
+        self.listened = set(Output)
+        self.now_ns = START_NS
+        self.steady_ns = 0
+        self.detector = OneRaisedHand()
+        self.core = NodeCore(
+            config,
+            publish=lambda output, message: self.published.append((output, message)),
+            has_subscribers=lambda output: output in self.listened,
+            log=lambda level, text: self.logged.append((level, text)),
+            now_ns=lambda: self.now_ns,
+            steady_ns=lambda: self.steady_ns,
+            detector=self.detector,
+            **more,
+        )
+        self.core.start()
+
+    def image(self, stamp_ns, width=64):
+        picture = np.zeros((48, width, 3), np.uint8)
+        self.core.receive(Input.IMAGES, encode(CameraImage(stamp_ns, "camera_link", picture)))
+
+    def scan(self, stamp_ns):
+        angles = np.linspace(-np.pi, np.pi, 360)
+        ranges = np.where(np.abs(angles) < 0.15, 2.0, 6.0)
+        scan = Scan(stamp_ns, "laser", -np.pi, 2 * np.pi / 359, 0.05, 12.0, ranges)
+        self.core.receive(Input.SCAN, encode(scan))
+
+    def mounting(self):
+        for child in ("camera_link", "laser"):
+            sample = StampedTransform(0, "base_link", child, RigidTransform(), is_static=True)
+            self.core.receive(Input.STATIC_TRANSFORMS, encode(sample))
+
+    def base(self, stamp_ns, x_m=0.0):
+        sample = StampedTransform(stamp_ns, "map", "base_link", RigidTransform((x_m, 0.0, 0.0)))
+        self.core.receive(Input.TRANSFORMS, encode(sample))
+
+    def diagnose(self):
+        """The statuses by name, as a reader of /diagnostics gets them."""
+        self.core.diagnose()
+        message = self.messages(Output.DIAGNOSTICS)[-1]
+        return {
+            status.name.removeprefix("hand_detector: "): SimpleNamespace(
+                level=status.level,
+                message=status.message,
+                values={item.key: item.value for item in status.values},
+            )
+            for status in message.status
+        }
+
+    def messages(self, output):
+        return [deserialize(*item) for kind, item in list(self.published) if kind is output]
+
+    def until(self, condition, timeout_s=10.0):
+        """Wait for the worker."""
+        end = time.monotonic() + timeout_s
+        while not condition():
+            assert time.monotonic() < end, "the worker did not get there"
+            time.sleep(0.002)
+
+    def settle(self):
+        """Wait until the worker has done with every image that waits for nothing any more."""
+        self.until(lambda: self.core._inbox.images_waiting == 0)
+        for _ in range(3):  # a barrier may fall between two images of one batch
+            done = threading.Event()
+            self.core._inbox.order(done.set)
+            assert done.wait(10.0), "the worker did not get there"
+
+
+@pytest.fixture
+def make_wire():
+    """Makes a started core; it is stopped afterwards."""
+    wires = []
+
+    def make(config=None, **more):
+        wires.append(Wire(config or Config(), **more))
+        return wires[-1]
+
+    yield make
+    for wire in wires:
+        wire.detector.may_run.set()
+        wire.core.stop()
+        assert not wire.core.is_alive
+
+
+@pytest.fixture
+def wire(make_wire):
+    """A started core whose camera and laser are mounted on a base."""
+    made = make_wire()
+    made.mounting()
+    return made

@@ -1,0 +1,71 @@
+"""A robot's drivers, for the tests: an .mcap's messages on ROS 2 at their pace.
+
+    python play_recording.py RECORDING [--loop N] [--rate R] [--without TOPIC]
+
+Images, scans and CameraInfo are offered best effort, as cameras and scanners do.
+"""
+
+import argparse
+import importlib
+import time
+
+import rclpy
+from mcap.reader import make_reader
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+SENSORS = ("/image_raw", "/scan", "/camera_info")
+
+
+def publisher_of(node, topic, type_name):
+    package, _, name = type_name.split("/")
+    reliability = ReliabilityPolicy.BEST_EFFORT if topic in SENSORS else ReliabilityPolicy.RELIABLE
+    durability = DurabilityPolicy.VOLATILE
+    if topic == "/tf_static":
+        durability = DurabilityPolicy.TRANSIENT_LOCAL
+    qos = QoSProfile(depth=100, reliability=reliability, durability=durability)
+    return node.create_publisher(
+        getattr(importlib.import_module(f"{package}.msg"), name), topic, qos
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("recording")
+    parser.add_argument("--loop", type=int, default=1)
+    parser.add_argument("--rate", type=float, default=1.0)
+    parser.add_argument("--wait-for", default="/tf", help="begin when this topic has a listener")
+    parser.add_argument("--without", action="append", default=[])
+    arguments = parser.parse_args()
+    rclpy.init()
+    node = rclpy.create_node("player")
+    with open(arguments.recording, "rb") as file:
+        reader = make_reader(file)
+        kinds = {
+            channel.topic: reader.get_summary().schemas[channel.schema_id].name
+            for channel in reader.get_summary().channels.values()
+        }
+        publishers = {
+            topic: publisher_of(node, topic, kind)
+            for topic, kind in kinds.items()
+            if topic not in arguments.without and not topic.startswith("/truth")
+        }
+        hurry = time.monotonic() + 10.0  # wait for somebody to listen, but not for ever
+        while (
+            time.monotonic() < hurry
+            and not publishers[arguments.wait_for].get_subscription_count()
+        ):
+            time.sleep(0.05)
+        time.sleep(0.5)
+        for _ in range(arguments.loop):
+            began, first_ns = time.monotonic(), None
+            for _, channel, message in reader.iter_messages(topics=list(publishers)):
+                first_ns = first_ns or message.log_time
+                due = began + (message.log_time - first_ns) / 1e9 / arguments.rate
+                time.sleep(max(due - time.monotonic(), 0.0))
+                publishers[channel.topic].publish(message.data)
+    time.sleep(0.5)
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+main()

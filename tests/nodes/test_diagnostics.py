@@ -1,0 +1,101 @@
+from nodes.topics import Input, Output
+from tracker import Config
+
+START_NS = 1_000_000_000_000
+OK, WARN, ERROR = 0, 1, 2
+
+
+def test_what_never_came_is_missing_by_name_with_its_topic(make_wire):
+    wire = make_wire(topic_names={Input.SCAN: "/robot/scan"})
+    found = wire.diagnose()
+    assert (found["images"].level, found["images"].message) == (
+        ERROR, "missing: nothing has come on image_raw",
+    )  # fmt: skip
+    assert found["scan"].level == WARN
+    assert found["scan"].message == "missing: nothing has come on /robot/scan"
+    assert found["transforms"].message == "missing: nothing has come on /tf"
+    assert found["camera_info"].level == OK
+    assert found["camera_info"].message.startswith("missing: camera_fx")
+    assert found["customers"].message == "no image was processed yet"
+
+
+def test_what_has_ceased_is_stale_within_a_second(wire):
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 1)
+    wire.scan(START_NS)
+    wire.image(START_NS)
+    wire.settle()
+    found = wire.diagnose()
+    assert [found[name].level for name in ("images", "scan", "transforms")] == [OK, OK, OK]
+    wire.steady_ns += 900_000_000
+    found = wire.diagnose()
+    assert found["images"].message == "stale: nothing has come on image_raw for 0.9 s"
+    assert found["scan"].message == "stale: nothing has come on scan for 0.9 s"
+    assert found["transforms"].message == "stale: nothing has come on /tf for 0.9 s"
+
+
+def test_a_camera_that_stands_still_needs_no_moving_transforms(make_wire):
+    wire = make_wire(Config(fixed_frame="base_link"))
+    wire.mounting()
+    wire.settle()
+    wire.image(START_NS)
+    wire.settle()
+    assert wire.diagnose()["transforms"].level == OK
+
+
+def test_transforms_that_do_not_connect_are_told_apart_from_missing_ones(make_wire):
+    wire = make_wire()  # nothing mounts the camera on the base
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 1)
+    wire.image(START_NS)
+    wire.steady_ns += 400_000_000
+    wire.base(START_NS + 2)
+    wire.settle()
+    transforms = wire.diagnose()["transforms"]
+    assert transforms.level == WARN
+    assert "No transform names the frame 'camera_link'" in transforms.message
+
+
+def test_rates_are_told_by_the_steady_clock(wire):
+    wire.base(START_NS - 1)
+    wire.diagnose()
+    for second in range(4):
+        for number in range(30):
+            stamp_ns = START_NS + second * 10**9 + number * 33_333_333
+            wire.base(stamp_ns + 1)
+            wire.image(stamp_ns)
+        wire.settle()
+        wire.steady_ns += 1_000_000_000
+        found = wire.diagnose()
+    assert found["images"].values["rate_hz"] == "30.0"
+    assert found["images"].values["received"] == "120"
+
+
+def test_latency_is_from_the_stamp_to_the_publication_on_the_nodes_clock(wire):
+    wire.now_ns = START_NS + 42_000_000
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 1)
+    wire.image(START_NS)
+    wire.settle()
+    values = wire.diagnose()["processing"].values
+    assert values["latency_ms_median"] == values["latency_ms_p99"] == "42.0"
+    assert values["processed"] == "1"
+    assert values["detector"] == "OneRaisedHand"
+    assert values["raise_rule"] == "palm"
+
+
+def test_stamps_of_another_time_are_named_rather_than_called_late(wire):
+    wire.now_ns = START_NS + 3600 * 10**9
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 1)
+    wire.image(START_NS)
+    wire.settle()
+    values = wire.diagnose()["processing"].values
+    assert "3600.0 s from the node's clock: is use_sim_time right?" in values["latency"]
+    assert "latency_ms_median" not in values
+
+
+def test_the_report_bears_the_nodes_time(wire):
+    wire.core.diagnose()
+    stamp = wire.messages(Output.DIAGNOSTICS)[-1].header.stamp
+    assert stamp.sec == START_NS // 10**9

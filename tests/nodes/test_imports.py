@@ -1,0 +1,30 @@
+"""What both nodes share knows neither ROS nor DDS, and the tracker is below it."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+NODES = Path(__file__).parents[2] / "nodes"
+SHARED = (
+    "core", "diagnostics", "fault_log", "header_peek", "image_gate", "inbox", "outputs",
+    "parameters", "qos", "stamp_watch", "topics",
+)  # fmt: skip
+WIRES = {
+    "rclpy", "tf2_ros", "cyclonedds", "sensor_msgs", "std_msgs", "std_srvs", "geometry_msgs",
+    "vision_msgs", "visualization_msgs", "diagnostic_msgs", "rcl_interfaces", "tf2_msgs",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SHARED)
+def test_the_shared_part_speaks_no_wire(name):
+    tree = ast.parse((NODES / f"{name}.py").read_text(encoding="utf-8"))
+    imported = {
+        alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import)
+        for alias in node.names
+    } | {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert not {module.split(".")[0] for module in imported} & WIRES
+    ours = {module for module in imported if module.startswith("nodes.")}
+    assert ours <= {f"nodes.{other}" for other in SHARED}

@@ -1,0 +1,26 @@
+from nodes.qos import PROFILES
+from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, OUTPUT_TYPES, Input, Output
+from tracker.messages import definition
+
+
+def test_every_topic_has_a_profile_with_its_reason_and_a_bounded_depth():
+    assert set(PROFILES) == {*Input, *Output}
+    for profile in PROFILES.values():
+        assert profile.reason.endswith(".")
+        assert 1 <= profile.depth <= 100
+
+
+def test_sensors_are_heard_best_effort_and_the_state_is_latched():
+    for item in (Input.IMAGES, Input.SCAN, Input.CAMERA_INFO):
+        assert not PROFILES[item].reliable
+    latched = {item for item, profile in PROFILES.items() if profile.transient_local}
+    assert latched == {Output.HAND_RAISED, Input.STATIC_TRANSFORMS}
+    assert PROFILES[Output.HAND_RAISED].depth == 1
+
+
+def test_every_topic_has_a_type_that_is_spoken():
+    kinds = [topic.type_name for topic in [*IMAGE_TOPICS.values(), *INPUT_TOPICS.values()]]
+    for kind in [*kinds, *OUTPUT_TYPES.values()]:
+        assert definition(kind)
+    assert set(INPUT_TOPICS) == set(Input) - {Input.IMAGES}
+    assert set(OUTPUT_TYPES) == set(Output)

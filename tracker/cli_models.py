@@ -1,0 +1,63 @@
+"""`raised-hand models`: fetch the hand models, or show which are there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tracker.cli_options import JsonOption, console, errors, print_json
+
+models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
+
+
+@models_app.command("fetch")
+def models_fetch(
+    source: Annotated[
+        Path | None,
+        typer.Option("--from", help="The mediapipe wheel, fetched elsewhere; else pip is asked."),
+    ] = None,
+    to: Annotated[
+        Path | None,
+        typer.Option(
+            "--to", help="Folder for the ONNX files; else RAISED_HAND_MODELS or the cache."
+        ),
+    ] = None,
+) -> None:
+    """Take the hand and pose models from their PyPI wheel and convert them to ONNX.
+
+    For a robot without a network: fetch with --to on another machine, copy the folder, and set the
+    environment variable RAISED_HAND_MODELS to it.
+    """
+    from tracker.cli_progress import fetch_progress
+    from tracker.perception.models import ModelStore, fetch_models
+
+    store = ModelStore(to)
+    with fetch_progress(errors) as progress:
+        fetch_models(store, source, progress)
+    console.print(f"models are in {store.directory}", highlight=False, soft_wrap=True)
+
+
+@models_app.command("list")
+def models_list(as_json: JsonOption = False) -> None:
+    """Show which models are there, and where."""
+    from rich.table import Table
+
+    from tracker.perception.models import ModelStore
+
+    rows = ModelStore().status()
+    if as_json:
+        print_json(
+            [
+                {"name": row.name, "state": row.state.value, "path": str(row.path)}
+                | {"size_bytes": row.size_bytes, "source_sha256": row.source_sha256}
+                for row in rows
+            ]
+        )
+        return
+    table = Table("model", "state", "size", "file")
+    for row in rows:
+        size = f"{row.size_bytes / 1e6:.1f} MB" if row.size_bytes else ""
+        table.add_row(row.name, row.state.value, size, str(row.path))
+    console.print(table)

@@ -1,0 +1,68 @@
+"""What the commands share: common options, where words go, how results are printed."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from tracker.config import Config
+from tracker.errors import ConfigError
+
+console = Console()
+errors = Console(stderr=True)
+
+ConfigOption = Annotated[
+    Path | None,
+    typer.Option("--config", "-c", help="ROS parameter file, as config/hand_detector.yaml."),
+]
+ParameterOption = Annotated[
+    list[str] | None,
+    typer.Option("--param", "-p", help="One parameter, as in -p ranging:=spec; may be repeated."),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
+
+
+def parameters_from(
+    config: Path | None, assignments: list[str] | None, default: Config | None = None
+) -> Config:
+    """The configuration that the command line asks for.
+
+    Args:
+        config: A parameter file.
+        assignments: NAME:=VALUE, on top of the file.
+        default: What holds without a file; every parameter's own default where None.
+
+    Raises:
+        ConfigError: The file or an assignment is off.
+    """
+    import yaml
+
+    chosen = Config.from_yaml(config) if config is not None else default or Config()
+    changes: dict[str, Any] = {}
+    for assignment in assignments or []:
+        name, separator, text = assignment.partition(":=")
+        if not separator:
+            raise ConfigError(f"--param is {assignment!r}; needed is NAME:=VALUE.")
+        changes[name] = yaml.safe_load(text)
+    return chosen.replace(**changes) if changes else chosen
+
+
+def print_json(document: Any) -> None:
+    """Results for machines, on standard output."""
+    sys.stdout.write(json.dumps(document, indent=2) + "\n")
+
+
+def print_files(files: tuple[Path, ...]) -> None:
+    """One line per file that was written."""
+    for path in files:
+        console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+
+
+def complain(text: object) -> None:
+    """One line on standard error."""
+    errors.print(f"raised-hand: {text}", highlight=False, markup=False, soft_wrap=True)
