@@ -1,4 +1,4 @@
-"""How late is /hand_raised? From the image's stamp, across processes, beside perception's own time.
+"""How late is /hand_raised, from the image's stamp, beside perception's own time?
 
     python benchmarks/latency.py [--seconds 20]
 
