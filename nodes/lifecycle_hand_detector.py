@@ -7,7 +7,7 @@ import sys
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 from nodes.hand_detector import run
-from nodes.ros_wiring import RosWiring, declare_parameters
+from nodes.ros_wiring import RosWiring, current_parameters, declare_parameters
 from tracker.config import NODE_NAME
 from tracker.errors import TrackerError
 
@@ -24,7 +24,7 @@ class LifecycleHandDetector(LifecycleNode):
 
     def __init__(self) -> None:
         super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True)
-        self._config = declare_parameters(self)
+        declare_parameters(self)
         self._wiring: RosWiring | None = None
 
     @property
@@ -34,15 +34,15 @@ class LifecycleHandDetector(LifecycleNode):
 
     def close(self) -> None:
         """Stop working, in whatever state."""
-        if self._wiring is not None:
-            self._config = self._wiring.core.config
-            self._wiring.close()
-            self._wiring = None
+        # Taken away first: a core that is stopped on purpose is no dead one.
+        wiring, self._wiring = self._wiring, None
+        if wiring is not None:
+            wiring.close()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Load the models."""
         try:
-            self._wiring = RosWiring(self, self._config)
+            self._wiring = RosWiring(self, current_parameters(self))
         except TrackerError as error:
             self.get_logger().error(str(error))
             return TransitionCallbackReturn.FAILURE

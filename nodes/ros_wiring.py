@@ -87,6 +87,16 @@ def declare_parameters(node: Node) -> Config:
     return config
 
 
+def current_parameters(node: Node) -> Config:
+    """The declared parameters as they are now: anybody may have set them since.
+
+    Raises:
+        ConfigError: They do not go together.
+    """
+    names = Config.model_fields
+    return Config.from_mapping({name: node.get_parameter(name).value for name in names})
+
+
 class RosWiring:
     """A core with its publishers, services and parameters; `listen` adds the subscriptions.
 

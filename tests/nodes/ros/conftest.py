@@ -171,7 +171,7 @@ class Ear:
     def call(self, kind, name, request):
         client = self.node.create_client(kind, name)
         try:
-            assert client.wait_for_service(10.0), f"no service {name}"
+            assert client.wait_for_service(30.0), f"no service {name}"
             future = client.call_async(request)
             self.until(future.done)
             return future.result()
@@ -213,6 +213,7 @@ def run(tmp_path):
         if process.poll() is None:
             process.kill()
         process.wait()
+        print(process.log())  # pytest shows it where a test fails
 
 
 @pytest.fixture
