@@ -1,7 +1,6 @@
 """The node in a process of its own, played to by another, as on a robot."""
 
 import time
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -56,14 +55,6 @@ def play_undisturbed(ear, start_node, play, *ros_arguments):
         by_stamp_hz = (len(stamps) - 1) / ((stamps[-1] - stamps[0]) / 1e9)
         by_clock_hz = (len(arrivals) - 1) / (arrivals[-1] - arrivals[0])
         print(f"{by_stamp_hz:.3f} Hz by the stamps, {by_clock_hz:.3f} Hz by the clock; {status}")
-        print(
-            "gaps at",
-            [
-                round((stamp - stamps[0]) / 1e9, 2)
-                for stamp, after in pairwise(stamps)
-                if after - stamp > 150_000_000
-            ],
-        )
         if status.values["lost"] == "0" or not tries_left:
             break
         node.kill()
