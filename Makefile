@@ -29,7 +29,7 @@ ifeq ($(NUMPY),)
 endif
 
 soak: $(VENV)/.installed-test  ## an hour of simulated time through the node: about eight minutes
-	$(BIN)/python -m pytest -m soak -s
+	SOAK_MINUTES=60 $(BIN)/python -m pytest -m soak -s
 
 lint: $(VENV)/.installed-lint  ## style and types
 	$(BIN)/ruff check .
