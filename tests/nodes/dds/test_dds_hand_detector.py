@@ -24,25 +24,29 @@ TRIGGER, SET_BOOL = "std_srvs/srv/Trigger", "std_srvs/srv/SetBool"
 
 
 def play_undisturbed(ear, start_node, play, *arguments):
-    """Play until the node lost no image; on a machine that others use as well, that takes tries,
-    the last ones with slower clocks.
+    """Play until every image has come and the node lost none.
+
+    The wire is best effort: on a machine that others use as well that takes tries, the last ones
+    with slower clocks.
 
     Returns the rates by the stamps and by the player's clock.
     """
-    for speed in (1.0, 1.0, 0.5, 0.25):
+    for speed in (1.0, 1.0, 0.5, 0.25, 0.1):
         node = start_node(*arguments)
         player = play("--rate", speed)
-        assert player.wait(120.0) == 0, player.log()
+        assert player.wait(300.0) == 0, player.log()
         time.sleep(1.1)
         status = ear.statuses()["processing"]
+        received = ear.statuses()["images"].values["received"]
         stamps, _ = ear.frames()
         arrivals = [arrived for arrived, _ in ear.heard[Output.HAND_RAISED]]
         by_stamp_hz = (len(stamps) - 1) / ((stamps[-1] - stamps[0]) / 1e9)
         by_clock_hz = (len(arrivals) - 1) / (arrivals[-1] - arrivals[0]) / speed
         print(
-            f"{by_stamp_hz:.3f} Hz by the stamps, {by_clock_hz:.3f} Hz at speed {speed}; {status}"
+            f"{by_stamp_hz:.3f} Hz by the stamps, {by_clock_hz:.3f} Hz at speed {speed}; "
+            f"{received} images came; {status}"
         )
-        if status.values["lost"] == "0":
+        if f"/image_raw: {received}\n" in player.log() and status.values["lost"] == "0":
             break
         node.kill()
         node.wait()
@@ -86,8 +90,8 @@ def test_the_specifications_section_12_gives_eight_images_a_second(
 
 def test_a_recording_that_loops_resets_cleanly(ear, start_node, play):
     node = start_node()
-    player = play("--loop", "--start-offset", 3)
-    ear.until(lambda: ear.statuses()["processing"].values["resets"] == "2", 60.0)
+    player = play("--loop", "--start-offset", 3, "--rate", 0.5)
+    ear.until(lambda: ear.statuses()["processing"].values["resets"] == "2", 120.0)
     player.kill()
     stamps, raised = ear.frames()
     seams = np.flatnonzero(np.diff(stamps) < 0)
@@ -225,11 +229,15 @@ def test_simulated_time_stamps_the_diagnostics_and_resets_when_it_jumps_back(ear
     clock = ear.node.publisher("/clock", "rosgraph_msgs/msg/Clock")
     ear.until(lambda: clock.subscribers)
     for second in (50, 20):
-        now = build("builtin_interfaces/msg/Time", sec=second)
-        for _ in range(3):
-            clock.publish(encode_clock(now))
+        cdr = encode_clock(build("builtin_interfaces/msg/Time", sec=second))
+        # A clock ticks: of what comes in one go, a reader of depth one sees the last tick alone.
+        ear.until(
+            lambda cdr=cdr, second=second: (
+                clock.publish(cdr)
+                or ear.messages(Output.DIAGNOSTICS)[-1].header.stamp.sec == second
+            )
+        )
     ear.until(lambda: "/clock jumped back by 30.000 s" in node.log())
-    ear.until(lambda: ear.messages(Output.DIAGNOSTICS)[-1].header.stamp.sec == 20)
 
 
 def encode_clock(now):
