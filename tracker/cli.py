@@ -6,6 +6,7 @@ Results go to standard output, progress and complaints to standard error. Exit s
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated, NoReturn
@@ -46,6 +47,8 @@ _DEMO_JPEG_QUALITY = 92
 
 def main() -> NoReturn:
     """Run the command line; every foreseen failure is one line and a status."""
+    # What OpenCV's video reader has to say (8 is its "fatal"), our own line says better.
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "8")
     try:
         app()
     except (ConfigError, SceneError) as error:
