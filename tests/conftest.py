@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -38,3 +39,9 @@ def model_store(skip_when_offline: Callable[[], AbstractContextManager[None]]) -
     with skip_when_offline():
         ensure_models(store)
     return store
+
+
+@pytest.fixture(scope="session")
+def section_12() -> Path:
+    """The example of the specification's section 12, as a parameter file."""
+    return Path(__file__).with_name("specification_section_12.yaml")

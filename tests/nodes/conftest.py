@@ -1,11 +1,16 @@
-"""A core on a wire of its own: what is published is kept, time stands still until told."""
+"""What the nodes are tested with: a core on a wire of its own, and a recording with its answer.
+
+On the wire what is published is kept, and time stands still until told.
+"""
 
 import threading
 import time
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
 
 from nodes.core import NodeCore
 from nodes.topics import Input, Output
@@ -13,6 +18,8 @@ from tracker import CameraImage, Config, Hands, Scan
 from tracker.geometry import RigidTransform
 from tracker.messages import encode
 from tracker.messages.types import deserialize
+from tracker.replay import replay
+from tracker.simulation import load_scene, write_simulation
 from tracker.transforms import StampedTransform
 
 START_NS = 1_000_000_000_000
@@ -137,3 +144,35 @@ def wire(make_wire):
     made = make_wire()
     made.mounting()
     return made
+
+
+@pytest.fixture(scope="session")
+def recording(tmp_path_factory):
+    """Twelve seconds with one guest who raises a hand, 30 images a second."""
+    scene = load_scene("lonely").model_copy(update={"duration_s": 12.0})
+    path = tmp_path_factory.mktemp("recording") / "lonely.mcap"
+    write_simulation(scene, path, seed=1)
+    return path
+
+
+@pytest.fixture(scope="session")
+def replayed(recording, tmp_path_factory, model_store):
+    """What `replay` makes of the recording: raised or not, and where, by stamp."""
+
+    @cache
+    def run(config=None):
+        out = tmp_path_factory.mktemp("replay")
+        replay(recording, out, config or Config())
+        raised, xy = {}, {}
+        with (out / "output.mcap").open("rb") as file:
+            for schema, channel, message in make_reader(file).iter_messages(
+                topics=["/hand_raised", "/customer_pose"]
+            ):
+                said = deserialize(schema.name, message.data)
+                if channel.topic == "/hand_raised":
+                    raised[message.log_time] = said.data
+                else:
+                    xy[message.log_time] = said.pose.position.x, said.pose.position.y
+        return SimpleNamespace(raised=raised, xy=xy)
+
+    return run

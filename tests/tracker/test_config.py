@@ -20,21 +20,6 @@ SPECIFICATION_TABLE_1 = {
     "camera_cy": 240.0,
 }
 
-SPECIFICATION_SECTION_12 = """\
-hand_detector:
-  ros__parameters:
-    processing_rate: 8.0
-    downscale_factor: 3
-    hand_raised_threshold: 0.3
-    detection_confidence: 0.7
-    tracking_confidence: 0.6
-    model_complexity: 1
-    camera_fx: 500.0
-    camera_fy: 500.0
-    camera_cx: 320.0
-    camera_cy: 240.0
-"""
-
 
 @pytest.fixture
 def write(tmp_path):
@@ -66,8 +51,8 @@ def test_the_streaks_and_the_window_default_to_the_specifications_algorithms():
     assert config.scan_window_beams == 3  # algorithm 5
 
 
-def test_the_example_of_section_12_loads_unchanged(write):
-    config = Config.from_yaml(write(SPECIFICATION_SECTION_12))
+def test_the_example_of_section_12_loads_unchanged(section_12):
+    config = Config.from_yaml(section_12)
     assert config == Config(
         processing_rate=8.0,
         downscale_factor=3,
@@ -165,8 +150,8 @@ def test_the_nodes_own_section_wins_over_the_wildcard(write):
     assert (config.processing_rate, config.downscale_factor) == (7.0, 4)
 
 
-def test_other_nodes_in_the_same_file_are_left_alone(write):
-    text = "amcl:\n  ros__parameters: {alpha1: 0.2}\n" + SPECIFICATION_SECTION_12
+def test_other_nodes_in_the_same_file_are_left_alone(write, section_12):
+    text = "amcl:\n  ros__parameters: {alpha1: 0.2}\n" + section_12.read_text(encoding="utf-8")
     assert Config.from_yaml(write(text)).processing_rate == 8.0
 
 

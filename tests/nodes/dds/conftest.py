@@ -15,13 +15,10 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from mcap.reader import make_reader
 
 from nodes.qos import PROFILES, Profile
 from nodes.topics import OUTPUT_TYPES, Output
 from tracker.messages.types import build, deserialize, serialize
-from tracker.replay import replay
-from tracker.simulation import load_scene, write_simulation
 
 ROOT = Path(__file__).parents[3]
 CLIENT = Profile(True, False, 10, "ROS 2's default for services.")
@@ -83,61 +80,6 @@ def until():
                 time.sleep(0.01)
 
     return wait
-
-
-#: The example of the specification's section 12.
-SECTION_12 = """
-hand_detector:
-  ros__parameters:
-    processing_rate: 8.0
-    downscale_factor: 3
-    hand_raised_threshold: 0.3
-    detection_confidence: 0.7
-    tracking_confidence: 0.6
-    model_complexity: 1
-    camera_fx: 500.0
-    camera_fy: 500.0
-    camera_cx: 320.0
-    camera_cy: 240.0
-"""
-
-
-@pytest.fixture
-def section_12(tmp_path):
-    path = tmp_path / "section_12.yaml"
-    path.write_text(SECTION_12, encoding="utf-8")
-    return path
-
-
-@pytest.fixture(scope="session")
-def recording(tmp_path_factory):
-    """Twelve seconds with one guest who raises a hand, 30 images a second."""
-    scene = load_scene("lonely").model_copy(update={"duration_s": 12.0})
-    path = tmp_path_factory.mktemp("recording") / "lonely.mcap"
-    write_simulation(scene, path, seed=1)
-    return path
-
-
-@pytest.fixture(scope="session")
-def replayed(recording, tmp_path_factory, model_store):
-    """What `replay` makes of the recording: raised or not, and where, by stamp."""
-
-    def run(config):
-        out = tmp_path_factory.mktemp("replay")
-        replay(recording, out, config)
-        raised, xy = {}, {}
-        with (out / "output.mcap").open("rb") as file:
-            for schema, channel, message in make_reader(file).iter_messages(
-                topics=["/hand_raised", "/customer_pose"]
-            ):
-                said = deserialize(schema.name, message.data)
-                if channel.topic == "/hand_raised":
-                    raised[message.log_time] = said.data
-                else:
-                    xy[message.log_time] = said.pose.position.x, said.pose.position.y
-        return SimpleNamespace(raised=raised, xy=xy)
-
-    return run
 
 
 class Ear:

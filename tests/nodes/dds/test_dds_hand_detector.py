@@ -72,7 +72,7 @@ def assert_as_replay(ear, replayed, share=0.95):
 
 
 def test_ten_images_a_second_are_processed_as_replay_does(ear, start_node, play, replayed):
-    expected = replayed(Config())
+    expected = replayed()
     rates_hz = play_undisturbed(ear, start_node, play)
     assert rates_hz == pytest.approx((10.0, 10.0), abs=0.2)
     assert_as_replay(ear, expected)

@@ -14,80 +14,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from mcap.reader import make_reader
 
 from nodes.qos import PROFILES
 from nodes.topics import OUTPUT_TYPES, Output
-from tracker.config import Config
 from tracker.messages.types import deserialize
-from tracker.replay import replay
-from tracker.simulation import load_scene, write_simulation
 
 ROOT = Path(__file__).parents[3]
 HERE = Path(__file__).parent
-
-#: The example of the specification's section 12.
-SECTION_12 = """
-hand_detector:
-  ros__parameters:
-    processing_rate: 8.0
-    downscale_factor: 3
-    hand_raised_threshold: 0.3
-    detection_confidence: 0.7
-    tracking_confidence: 0.6
-    model_complexity: 1
-    camera_fx: 500.0
-    camera_fy: 500.0
-    camera_cx: 320.0
-    camera_cy: 240.0
-"""
-
-
-@pytest.fixture(scope="session")
-def section_12(tmp_path_factory):
-    path = tmp_path_factory.mktemp("parameters") / "section_12.yaml"
-    path.write_text(SECTION_12, encoding="utf-8")
-    return path
-
-
-@pytest.fixture(scope="session")
-def recording(tmp_path_factory):
-    """Twelve seconds with one guest who raises a hand, 30 images a second."""
-    scene = load_scene("lonely").model_copy(update={"duration_s": 12.0})
-    path = tmp_path_factory.mktemp("recording") / "lonely.mcap"
-    write_simulation(scene, path, seed=1)
-    return path
-
-
-@pytest.fixture(scope="session")
-def replayed(recording, tmp_path_factory, model_store):
-    """What `replay` makes of the recording: raised or not, and the pose, by stamp."""
-
-    def run(config):
-        out = tmp_path_factory.mktemp("replay")
-        replay(recording, out, config)
-        with (out / "output.mcap").open("rb") as file:
-            found = defaultdict(dict)
-            for schema, channel, message in make_reader(file).iter_messages(
-                topics=["/hand_raised", "/customer_pose"]
-            ):
-                content = deserialize(schema.name, message.data)
-                found[channel.topic][message.log_time] = content
-        return SimpleNamespace(
-            raised={stamp: item.data for stamp, item in found["/hand_raised"].items()},
-            xy={stamp: xy_of(item) for stamp, item in found["/customer_pose"].items()},
-        )
-
-    results = {}
-
-    def cached(config=None):
-        config = config or Config()
-        key = config.model_dump_json()
-        if key not in results:
-            results[key] = run(config)
-        return results[key]
-
-    return cached
 
 
 def xy_of(pose_stamped):
