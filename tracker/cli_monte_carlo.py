@@ -52,7 +52,8 @@ def monte_carlo_command(
 ) -> None:
     """Run many noisy trials, and hold the tracker against the truth and against what is possible.
 
-    Filter scenarios (model-matched, outliers) print RMSE over the Cramer-Rao bound and NEES; the
+    Filter scenarios (model-matched, outliers) print RMSE over the Cramer-Rao bound and NEES;
+    known-people those of several who have to be told apart, and how often they were not; the
     others run the whole tracker and print GOSPA, identity switches, times to raise and more. The
     scenario's own settings hold unless --config or -p says otherwise.
     """

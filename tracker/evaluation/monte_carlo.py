@@ -18,18 +18,26 @@ from tracker.containers import FloatArray
 from tracker.errors import ConfigError, SceneError
 from tracker.evaluation.cramer_rao import posterior_bound
 from tracker.evaluation.filter_study import filter_errors, prior_covariance
+from tracker.evaluation.known_people import known_people_rows
 from tracker.evaluation.people_trial import people_trial
 from tracker.evaluation.scenario import (
     SCENARIOS,
     FilterScenario,
+    KnownPeopleScenario,
     PeopleScenario,
     Scenario,
     default_config,
 )
-from tracker.evaluation.study import FilterStudy, PeopleStudy, Study, settled_frame
+from tracker.evaluation.study import (
+    FilterStudy,
+    KnownPeopleStudy,
+    PeopleStudy,
+    Study,
+    settled_frame,
+)
 
 #: Trials of one unit of work: enough to be worth sending, few enough to fit into a cache.
-_FILTER_UNIT, _PEOPLE_UNIT = 250, 2
+_BATCH_UNIT, _PEOPLE_UNIT = 250, 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +68,8 @@ def run_unit(scenario: Scenario, config: Config, seed: int, first: int, count: i
     """
     if isinstance(scenario, FilterScenario):
         return _filter_unit(scenario, config, seed, first, count)
+    if isinstance(scenario, KnownPeopleScenario):
+        return Unit(known_people_rows(scenario, config, seed, first, count))
     trials = [people_trial(scenario, config, seed, trial) for trial in range(first, first + count)]
     return Unit({name: np.array([row[name] for row in trials]) for name in trials[0]})
 
@@ -93,7 +103,7 @@ def monte_carlo(
         )
     name, scenario = find_scenario(scenario)
     config = default_config(scenario) if config is None else config
-    size = _FILTER_UNIT if isinstance(scenario, FilterScenario) else _PEOPLE_UNIT
+    size = _PEOPLE_UNIT if isinstance(scenario, PeopleScenario) else _BATCH_UNIT
     starts = range(0, trials, size)
     arguments = [(scenario, config, seed, first, min(size, trials - first)) for first in starts]
     units = []
@@ -103,6 +113,8 @@ def monte_carlo(
     rows = {key: np.concatenate([unit.rows[key] for unit in units]) for key in units[0].rows}
     if isinstance(scenario, PeopleScenario):
         return PeopleStudy(name, scenario, config, seed, rows)
+    if isinstance(scenario, KnownPeopleScenario):
+        return KnownPeopleStudy(name, scenario, config, seed, rows)
     means = {
         key: np.sum([unit.sums[key] for unit in units], axis=0) / trials for key in units[0].sums
     }

@@ -116,7 +116,47 @@ class PeopleScenario:
     parameters: Parameters = ()
 
 
-Scenario = FilterScenario | PeopleScenario
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownPeopleScenario:
+    """People who are known from the start and move as the tracker believes, seen by one sensor.
+
+    Prediction, gate, assignment and correction are at work; nobody comes or goes. Whatever
+    `motion`, `association`, `measurement_model` and `outlier_dof` say, people walk, the assignment
+    is the most likely one, and bearings and ranges are Gaussian.
+
+    Attributes:
+        title: One sentence.
+        people: How many.
+        frames: Of each trial.
+        rate_hz: How many come each second.
+        area_m: Where people begin, and where clutter is: x from, x to, y from, y to; the sensor
+            stands at the origin.
+        start_std_m: Spread of the beginning, which the tracker is told ...
+        speed_std_mps: ... and of the speed, per axis.
+        acceleration_density: How restless people are, m^2/s^3.
+        bearing_std_deg: Noise of the bearing.
+        range_std_m: Noise of the range.
+        detection_probability: Of everybody in every frame.
+        clutter_per_frame: Mean number of measurements that are nobody's.
+        parameters: Names and values that the tracker is set to, where they are not its defaults.
+    """
+
+    title: str
+    people: int = 5
+    frames: int = 30
+    rate_hz: float = 10.0
+    area_m: tuple[float, float, float, float] = (4.0, 8.0, -3.0, 3.0)
+    start_std_m: float = 0.1
+    speed_std_mps: float = 0.5
+    acceleration_density: float = 0.3
+    bearing_std_deg: float = 1.0
+    range_std_m: float = 0.08
+    detection_probability: float = 0.95
+    clutter_per_frame: float = 1.0
+    parameters: Parameters = ()
+
+
+Scenario = FilterScenario | KnownPeopleScenario | PeopleScenario
 
 _MATCHED = _parameters(motion="cv", acceleration_density=0.3, outlier_dof=0.0)
 _HEAVY_TAILED = _parameters(motion="cv", acceleration_density=0.3)
@@ -142,6 +182,19 @@ SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
             title="As model-matched, but one range in twenty is off by meters.",
             outlier_share=0.05,
             parameters=_HEAVY_TAILED,
+        ),
+        "known-people": KnownPeopleScenario(
+            title="Five people who are known from the start, among clutter, seen 19 times of 20.",
+            parameters=_parameters(
+                acceleration_density=0.3, detection_probability=0.95, newcomer_density=0.04
+            ),
+        ),
+        "known-people-missed": KnownPeopleScenario(
+            title="The same, seen 6 times of 10.",
+            detection_probability=0.6,
+            parameters=_parameters(
+                acceleration_density=0.3, detection_probability=0.6, newcomer_density=0.04
+            ),
         ),
         "people": PeopleScenario(
             title="Three to eight people who walk and stop, seen 19 times of 20.",

@@ -14,7 +14,7 @@ from tracker.containers import FloatArray
 from tracker.evaluation.consistency import mean_bounds
 from tracker.evaluation.cramer_rao import posterior_bound
 from tracker.evaluation.filter_study import prior_covariance
-from tracker.evaluation.scenario import FilterScenario, PeopleScenario
+from tracker.evaluation.scenario import FilterScenario, KnownPeopleScenario, PeopleScenario
 
 #: A filter is judged once its first second, in which it knows what it was told, is over.
 SETTLED_S = 1.0
@@ -103,18 +103,58 @@ class FilterStudy:
         settled = settled_frame(self.scenario)
         expected_m = float(np.sqrt(self.bound_m2[settled:].mean()))
         bound_m = float(np.sqrt(self.rows["bound_m2"].mean()))
-        mse = _mean("", self.rows["mse_m2"])
-        value, low, high = (float(np.sqrt(max(x, 0.0))) for x in (mse.value, mse.low, mse.high))
+        rmse = _root_mean("RMSE (m)", self.rows["mse_m2"])
         bounds = mean_bounds(4, self.trials)
         nees = _mean("NEES at the end (ideal 4)", self.rows["final_nees"])
         return (
-            Figure("RMSE / Cramer-Rao bound", value / bound_m, low / bound_m, high / bound_m),
-            Figure("RMSE (m)", value, low, high),
+            Figure(
+                "RMSE / Cramer-Rao bound",
+                rmse.value / bound_m,
+                rmse.low / bound_m,
+                rmse.high / bound_m,
+            ),
+            rmse,
             Figure("bound along the paths (m)", bound_m),
             Figure("bound of expected information (m)", expected_m),
             Figure(nees.name, nees.value, nees.low, nees.high, bounds),
             _mean("NEES over time (ideal 4)", self.rows["mean_nees"]),
             Figure("tracks lost", float(self.lost)),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class KnownPeopleStudy:
+    """Trials of a `KnownPeopleScenario`.
+
+    Attributes:
+        name: Of the scenario.
+        scenario: What happened.
+        config: The tracker's parameters.
+        seed: Of the study.
+        rows: Figures of each trial, shape (B,), from `known_people.known_people_rows`.
+    """
+
+    name: str
+    scenario: KnownPeopleScenario
+    config: Config
+    seed: int
+    rows: dict[str, FloatArray]
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return len(self.rows["mse_m2"])
+
+    @property
+    def figures(self) -> tuple[Figure, ...]:
+        """The table of the study."""
+        rows = self.rows
+        return (
+            _root_mean("RMSE (m)", rows["mse_m2"]),
+            _mean("NEES of found people (ideal 4)", rows["final_nees"]),
+            _mean("wrong measurements, share", rows["wrong_share"]),
+            _mean("people swapped, share", rows["swapped_share"]),
+            _mean("people lost, share", rows["lost_share"]),
         )
 
 
@@ -167,7 +207,7 @@ class PeopleStudy:
         )
 
 
-Study = FilterStudy | PeopleStudy
+Study = FilterStudy | KnownPeopleStudy | PeopleStudy
 
 
 def settled_frame(scenario: FilterScenario) -> int:
@@ -204,6 +244,12 @@ def _mean(name: str, values: FloatArray) -> Figure:
         return Figure(name, mean)
     half = float(norm.ppf(0.975) * values.std(ddof=1) / np.sqrt(len(values)))
     return Figure(name, mean, mean - half, mean + half)
+
+
+def _root_mean(name: str, squares: FloatArray) -> Figure:
+    mean = _mean(name, squares)
+    value, low, high = (float(np.sqrt(max(x, 0.0))) for x in (mean.value, mean.low, mean.high))
+    return Figure(name, value, low, high)
 
 
 def _share(name: str, count: float, total: float) -> Figure:

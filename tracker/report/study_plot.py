@@ -10,10 +10,16 @@ from matplotlib.figure import Figure
 
 from tracker.containers import FloatArray
 from tracker.evaluation.consistency import mean_bounds
-from tracker.evaluation.study import FilterStudy, PeopleStudy, Study
+from tracker.evaluation.study import FilterStudy, KnownPeopleStudy, PeopleStudy, Study
 from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
 
 _GOSPA_PARTS = ("localisation", "missed", "false")
+_KNOWN_PEOPLE = (
+    ("mse_m2", "mean squared error (m$^2$)"),
+    ("final_nees", "NEES of found people (ideal 4)"),
+    ("wrong_share", "wrong measurements, share"),
+    ("swapped_share", "people swapped, share"),
+)
 _DISTRIBUTIONS = (
     ("gospa_m", "GOSPA (m)"),
     ("identity_switches_per_min", "identity switches a minute"),
@@ -35,6 +41,9 @@ def draw_study(study: Study, path: str | Path) -> None:
     figure = Figure(figsize=(10.0, 4.4), dpi=160, facecolor=PAPER, layout="constrained")
     if isinstance(study, FilterStudy):
         _draw_filter(figure, study)
+    elif isinstance(study, KnownPeopleStudy):
+        for axes, (name, title) in zip(figure.subplots(1, 4), _KNOWN_PEOPLE, strict=True):
+            _draw_distribution(axes, study.rows[name], title)
     else:
         _draw_people(figure, study)
     figure.suptitle(f"{study.name}: {study.trials} trials of seed {study.seed}", color=INK)
