@@ -58,7 +58,7 @@ class StoneSoup:
         self.predictor = predictor = ExtendedKalmanPredictor(model)
         self.sensor = CartesianToBearingRange(4, (0, 2), np.diag(np.square(noise_std)))
         self.updater = updater = ExtendedKalmanUpdater(self.sensor)
-        nearest = GNNWith2DAssignment(
+        self.associator = nearest = GNNWith2DAssignment(
             DistanceHypothesiser(predictor, updater, Mahalanobis(), missed_distance=3.0)
         )
         deleter = UpdateTimeStepsDeleter(delete_after)

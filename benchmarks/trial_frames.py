@@ -1,16 +1,18 @@
 """How many trial-frames of Monte Carlo in a second? The product's arrays beside loops of filters.
 
-    python benchmarks/trial_frames.py [--people 5 20] [--trials 200] [--seconds 20]
+    python benchmarks/trial_frames.py [--people 5 20] [--trials 250] [--seconds 15]
 
-A trial-frame is one frame of one trial with so many people. Two kinds of work:
+A trial-frame is one frame of one trial with so many people. Three kinds of work:
 
-  filter    predict and update of everybody, whose measurement is whose being known
-  tracker   the whole of it: gate, association, update, life cycle
+  filter       predict and update of everybody, whose measurement is whose being known
+  association  predict, gate, optimal assignment and update of people who are known
+  tracker      the whole of it: association, and a life cycle that finds out who is there
 
-The product's filter takes all trials as one array. Its tracker does as well: each trial is a room
-of its own with its own sensor, the rooms stand a kilometer apart, and gates see to the rest.
-filterpy (linear, positions) and Stone Soup (extended, bearing and range) run one trial, as they
-would run each of many. Contenders take turns, so that other work slows all alike; medians.
+The product's filter and its association take all trials as one array, the latter in NumPy and, as
+`fast`, compiled by numba. Its tracker does as well: each trial is a room of its own with its own
+sensor, the rooms stand a kilometer apart, and gates see to the rest. filterpy (linear, positions)
+and Stone Soup (extended, bearing and range) run one trial, as they would run each of many.
+Contenders take turns, so that other work slows all alike; medians.
 """
 
 from __future__ import annotations
@@ -19,6 +21,8 @@ import argparse
 import time
 from collections.abc import Callable
 from datetime import timedelta
+from functools import partial
+from importlib.util import find_spec
 
 import numpy as np
 from _stone_soup import START, StoneSoup
@@ -28,13 +32,16 @@ from scipy.optimize import linear_sum_assignment
 from stonesoup.types.detection import Detection
 from stonesoup.types.hypothesis import SingleHypothesis
 from stonesoup.types.state import GaussianState
+from stonesoup.types.track import Track
 
 from tracker import Config, Measurements, PersonTracker
+from tracker.evaluation.batched_tracker import BatchedTracker
 from tracker.tracking.filter import update
 from tracker.tracking.motion import predict
 
 PERIOD_S, BEARING_STD_RAD, RANGE_STD_M, DENSITY = 0.1, 0.01, 0.05, 0.3
 ROOM_M = 1000.0
+START_COVARIANCE = np.diag([0.01, 0.01, 0.25, 0.25])
 Step = Callable[[int, np.ndarray], None]  # frame, positions (B, N, 2)
 
 
@@ -58,6 +65,24 @@ def product_filter(trials: int, people: int) -> Step:
             state["mean"][:, :2] = flat
         prior = predict(state["mean"], state["covariance"], PERIOD_S, DENSITY)
         state["mean"], state["covariance"] = update(*prior, polar(flat, sensors))
+
+    return step
+
+
+def product_association(trials: int, people: int, *, compiled: bool = False) -> Step:
+    config = Config().replace(acceleration_density=DENSITY)
+    trackers: list[BatchedTracker] = []
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        x, y = np.ascontiguousarray(np.moveaxis(xy, -1, 0).swapaxes(1, 2))  # (N, B)
+        if frame == 0:
+            mean = np.stack([x, y, 0.0 * x, 0.0 * x])
+            covariance = START_COVARIANCE[..., None, None] + np.zeros(x.shape)
+            noise = (BEARING_STD_RAD, RANGE_STD_M)
+            trackers.append(BatchedTracker(mean, covariance, config, *noise, compiled=compiled))
+        chosen = trackers[0].step(PERIOD_S, np.arctan2(y, x), np.hypot(x, y))
+        # The gate turns one true measurement in a hundred away.
+        assert np.count_nonzero(chosen) > 0.9 * x.size
 
     return step
 
@@ -103,7 +128,7 @@ def filterpy_filter(trials: int, people: int) -> Step:
     return step
 
 
-def filterpy_tracker(trials: int, people: int) -> Step:
+def filterpy_association(trials: int, people: int) -> Step:
     filters = filterpy_filters(people)
 
     def step(frame: int, xy: np.ndarray) -> None:
@@ -138,6 +163,28 @@ def stone_soup_filter(trials: int, people: int) -> Step:
     return step
 
 
+def stone_soup_association(trials: int, people: int) -> Step:
+    peer = StoneSoup((BEARING_STD_RAD, RANGE_STD_M), "gnn", acceleration_density=DENSITY)
+    order = [0, 2, 1, 3]  # x, y, vx, vy as x, vx, y, vy
+    tracks: list[Track] = []
+
+    def step(frame: int, xy: np.ndarray) -> None:
+        now = START + timedelta(seconds=frame * PERIOD_S)
+        if frame == 0:
+            covariance = START_COVARIANCE[np.ix_(order, order)]
+            tracks.extend(
+                Track([GaussianState([[x], [0], [y], [0]], covariance, now)]) for x, y in xy[0]
+            )
+        detections = {
+            Detection(np.array([[np.arctan2(y, x)], [np.hypot(x, y)]]), now, peer.sensor)
+            for x, y in xy[0]
+        }
+        for track, hypothesis in peer.associator.associate(tracks, detections, now).items():
+            track.append(peer.updater.update(hypothesis) if hypothesis else hypothesis.prediction)
+
+    return step
+
+
 def stone_soup_tracker(trials: int, people: int) -> Step:
     peer = StoneSoup((BEARING_STD_RAD, RANGE_STD_M), "gnn", acceleration_density=DENSITY)
 
@@ -153,12 +200,15 @@ WORK: dict[str, dict[str, Callable[[int, int], Step]]] = {
         "filterpy": filterpy_filter,
         "Stone Soup": stone_soup_filter,
     },
-    "tracker": {
-        "product": product_tracker,
-        "filterpy": filterpy_tracker,
-        "Stone Soup": stone_soup_tracker,
+    "association": {
+        "product": product_association,
+        "fast": partial(product_association, compiled=True),
+        "filterpy": filterpy_association,
+        "Stone Soup": stone_soup_association,
     },
+    "tracker": {"product": product_tracker, "Stone Soup": stone_soup_tracker},
 }
+CONTENDERS = ("product", "fast", "filterpy", "Stone Soup")
 
 
 def rates(work: str, people: int, trials: int, seconds: float) -> dict[str, float]:
@@ -167,7 +217,11 @@ def rates(work: str, people: int, trials: int, seconds: float) -> dict[str, floa
     side = int(np.ceil(np.sqrt(people)))
     grid = np.stack(np.divmod(np.arange(people), side), axis=-1)
     at = np.broadcast_to(3.0 + 2.0 * grid, (trials, people, 2))
-    steps = {name: make(trials, people) for name, make in WORK[work].items()}
+    steps = {
+        name: make(trials, people)
+        for name, make in WORK[work].items()
+        if name != "fast" or find_spec("numba") is not None
+    }
     spent: dict[str, list[float]] = {name: [] for name in steps}
     begin_s, frame = time.perf_counter(), 0
     while frame < 8 or (time.perf_counter() - begin_s < seconds and frame < 300):
@@ -177,25 +231,26 @@ def rates(work: str, people: int, trials: int, seconds: float) -> dict[str, floa
             step(frame, measured)
             spent[name].append(time.perf_counter() - start)
         frame += 1
-    at_once = {name: trials if name == "product" else 1 for name in steps}
+    at_once = {name: trials if name in ("product", "fast") else 1 for name in steps}
     return {name: at_once[name] / float(np.median(times[4:])) for name, times in spent.items()}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--people", type=int, nargs="+", default=[5, 20])
-    parser.add_argument("--trials", type=int, default=60)
+    parser.add_argument("--trials", type=int, default=250)
     parser.add_argument("--seconds", type=float, default=15.0, help="for each line")
     words = parser.parse_args()
     table = Table(title=f"trial-frames a second, {words.trials} trials", title_justify="left")
-    for column in ("work", "people", "product", "filterpy", "Stone Soup", "x filterpy", "x S. S."):
+    for column in ("work", "people", *CONTENDERS, "product / S. S.", "fast / S. S."):
         table.add_column(column, justify="right")
     for work in WORK:
         for people in words.people:
             found = rates(work, people, words.trials, words.seconds)
-            times = [found["product"] / found[name] for name in ("filterpy", "Stone Soup")]
-            numbers = [f"{value:,.0f}" for value in [*found.values(), *times]]
-            table.add_row(work, str(people), *numbers)
+            numbers = [found.get(name, np.nan) for name in CONTENDERS]
+            numbers += [found.get(name, np.nan) / found["Stone Soup"] for name in CONTENDERS[:2]]
+            told = ["-" if np.isnan(number) else f"{number:,.0f}" for number in numbers]
+            table.add_row(work, str(people), *told)
     Console().print(table)
 
 
