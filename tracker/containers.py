@@ -261,8 +261,10 @@ class Measurements:
         covariance[:, 0, 0] = _column("bearing_std_rad", bearing_std_rad, count) ** 2
         range_variance = _column("range_std_m", range_std_m, count) ** 2
         covariance[:, 1, 1] = np.where(np.isnan(range_), 1.0, range_variance)
+        values = np.empty((count, 2))
+        values[:, 0], values[:, 1] = bearing, range_
         return Measurements(
-            values=np.stack([bearing, range_], axis=-1),
+            values=values,
             covariance=covariance,
             model=np.full(count, MeasurementModel.POLAR),
             sensor_pose=_rows("sensor_pose", sensor_pose, (count, 3)),
@@ -492,30 +494,28 @@ def check_stamp(stamp_ns: int) -> None:
 
 def _freeze(batch: object, name: str, value: ArrayLike, dtype: type) -> None:
     view: NDArray[Any] = np.asarray(value, dtype=dtype).view()
-    view.flags.writeable = False
+    view.setflags(write=False)
     object.__setattr__(batch, name, view)
 
 
 def _check_rows(batch: Any, count: int, **tails: tuple[int, ...]) -> None:
-    arrays = {
-        item.name: getattr(batch, item.name)
-        for item in fields(batch)
-        if isinstance(getattr(batch, item.name), np.ndarray)
-    }
-    if any(array.shape != (count, *tails.get(name, ())) for name, array in arrays.items()):
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise ShapeError(f"{type(batch).__name__} disagree in shape: {shapes}.")
+    arrays = _arrays(batch)
+    for name, array in arrays.items():
+        if array.shape != (count, *tails.get(name, ())):
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+            raise ShapeError(f"{type(batch).__name__} disagree in shape: {shapes}.")
 
 
 def _select(batch: _Batch, rows: Any) -> _Batch:
     if isinstance(rows, (int, np.integer)):
         rows = [rows]  # one row is a batch of one
-    chosen = {
-        item.name: getattr(batch, item.name)[rows]
-        for item in fields(batch)
-        if isinstance(getattr(batch, item.name), np.ndarray)
-    }
+    chosen = {name: array[rows] for name, array in _arrays(batch).items()}
     return replace(batch, **chosen)
+
+
+def _arrays(batch: Any) -> dict[str, NDArray[Any]]:
+    values = {name: getattr(batch, name) for name in batch.__dataclass_fields__}
+    return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
 
 
 def _column(name: str, value: ArrayLike, count: int) -> FloatArray:
@@ -524,6 +524,10 @@ def _column(name: str, value: ArrayLike, count: int) -> FloatArray:
 
 def _rows(name: str, value: ArrayLike, shape: tuple[int, ...]) -> FloatArray:
     array = np.asarray(value, dtype=np.float64)
+    if array.shape == shape:
+        return array
+    if array.ndim == 0:
+        return np.full(shape, array)
     try:
         return np.broadcast_to(array, shape)
     except ValueError as error:

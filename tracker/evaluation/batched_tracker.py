@@ -9,7 +9,7 @@ state along the first, so that each operation runs through memory in one go. Wit
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 from importlib.util import find_spec
 from typing import Any
 
@@ -34,7 +34,7 @@ class BatchedTracker:
         config: `acceleration_density`, the gate, `detection_probability`, `newcomer_density`.
         bearing_std_rad: Noise of the bearings.
         range_std_m: Noise of the ranges.
-        compiled: Whether numba does the work; None where it is installed.
+        compiled: Let numba do the work, if it is installed.
     """
 
     def __init__(
@@ -45,13 +45,13 @@ class BatchedTracker:
         bearing_std_rad: float,
         range_std_m: float,
         *,
-        compiled: bool | None = None,
+        compiled: bool = True,
     ) -> None:
         self.mean = np.array(mean, dtype=np.float64)
         self.covariance = np.array(covariance, dtype=np.float64)
         self._config = config
         self._noise = (bearing_std_rad**2, range_std_m**2)
-        self._compiled = _compiled_frame() if compiled in (None, True) else None
+        self._compiled = _compiled_frame() if compiled else None
 
     def step(self, dt_s: float, bearing_rad: FloatArray, range_m: FloatArray) -> BoolArray:
         """Take in one frame of every trial.
@@ -173,7 +173,7 @@ def _frame(
     covariance -= by_range[:, None] * by_range
 
 
-@lru_cache(maxsize=1)
+@cache
 def _compiled_frame() -> Any:
     if find_spec("numba") is None:
         return None

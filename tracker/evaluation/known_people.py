@@ -104,7 +104,7 @@ def known_people_rows(
     first: int,
     count: int,
     *,
-    compiled: bool | None = None,
+    compiled: bool = True,
 ) -> dict[str, FloatArray]:
     """Run trials, all at once.
 

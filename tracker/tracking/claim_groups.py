@@ -64,9 +64,12 @@ def group_claims(claims: Measurements) -> Iterator[ClaimGroup]:
 
 
 def _group(claims: Measurements, rows: IntArray, kind: int, is_doubtful: bool) -> ClaimGroup:
-    values, noise = claims.values[rows], claims.covariance[rows]
+    # Nearly always it is all of them, and then nothing needs to be picked.
+    picked = rows if len(rows) < len(claims) else slice(None)
+    values, noise = claims.values[picked], claims.covariance[picked]
     ranged = kind >= 0
     if not ranged:
+        values, noise = values.copy(), noise.copy()
         values[:, 1] = 0.0
         noise[:, 1, :] = noise[:, :, 1] = 0.0
         noise[:, 1, 1] = 1.0

@@ -152,9 +152,9 @@ def _expect(
     # Only the gate and the likelihoods see the floor, the filter does not: an over-confident
     # track shall find its measurements, and what it makes of them stays Bayes' rule.
     spread = own.copy()
-    floor = config.innovation_floor_m**2 * (jacobian * jacobian).sum(axis=-1)
-    for axis in (0, 1):
-        spread[..., axis, axis] = np.maximum(own[..., axis, axis], floor[..., axis])
+    floor = config.innovation_floor_m**2 * np.einsum("...ij,...ij->...i", jacobian, jacobian)
+    variance = np.einsum("...ii->...i", spread)  # a view
+    np.maximum(variance, floor, out=variance)
     doubt = None
     if group.sensor_pose_covariance is not None:
         doubt = pose_noise(jacobian, group.sensor_pose_covariance)
@@ -187,15 +187,15 @@ def _pairs_of_group(belief: Belief, group: ClaimGroup, config: Config) -> Pairs:
 
     noise = np.broadcast_to(noise, spread.shape)
     if expected.doubt is not None:
-        noise = noise + expected.doubt[:, track]
+        noise = noise + expected.doubt.take(track, axis=1)
     if dof > 0.0:
-        noise = outlier_noise(expected.own[:, track], innovation, noise, dof)
+        noise = outlier_noise(expected.own.take(track, axis=1), innovation, noise, dof)
     freedom = 2.0 if group.ranged else 1.0
     return Pairs(
         track,
         group.rows[row],
         innovation,
-        expected.jacobian[:, track],
+        expected.jacobian.take(track, axis=1),
         noise,
         -0.5 * (distance + np.log(area) + freedom * _LOG_TURN),
         np.log(newcomer_density(group, values, config)),
@@ -218,17 +218,17 @@ def _pair_up(
     expected: _Expected, track: IntArray, values: FloatArray, noise: FloatArray, polar: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Innovations of pairs, and their S."""
-    innovation = values - expected.values[:, track]
+    innovation = values - expected.values.take(track, axis=1)
     if polar:
         innovation[..., 0] = normalize_angle(innovation[..., 0])
-    return innovation, expected.spread[:, track] + noise
+    return innovation, expected.spread.take(track, axis=1) + noise
 
 
 def _inside_box(
     expected: _Expected, group: ClaimGroup, limit: float, dof: float
 ) -> tuple[IntArray, IntArray]:
     """Pairs inside the boxes around the gates' ellipses: rows of tracks, and of the group."""
-    variance = expected.spread[0][..., [0, 1], [0, 1]] + group.noise.max(axis=0).diagonal()
+    variance = expected.spread[0].diagonal(axis1=-2, axis2=-1) + group.noise.max(axis=0).diagonal()
     tail = max(limit, dof * np.expm1(limit / (dof + 1.0)) if dof > 0.0 else 0.0)
     half = np.sqrt(variance * [limit, tail])
     apart = group.values[:, 1] - expected.values[0, :, None, 1]

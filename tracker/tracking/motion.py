@@ -114,25 +114,18 @@ def predict(
 def carry(
     mean: FloatArray, covariance: FloatArray, motion: Motion
 ) -> tuple[FloatArray, FloatArray]:
-    """F x and F P F' + Q of every mode; both axes move alike, and apart from each other.
+    """F x and F P F' + Q of every mode.
+
+    One small product for each track, so that no last bit depends on how many there are.
 
     Args:
         mean: Shape (..., K, N, 4).
         covariance: Shape (..., K, N, 4, 4).
         motion: K modes.
     """
-    drift, fade = motion.transition[:, 0, 2], motion.transition[:, 2, 2]
-    # Number by number: the last bit of a matrix product would depend on how many rows it has.
-    drift, fade = drift[:, None, None], fade[:, None, None]
-    carried = np.array(mean)
-    carried[..., :2] += drift * mean[..., 2:]
-    carried[..., 2:] *= fade
-    drift, fade = drift[..., None], fade[..., None]
-    spread = np.array(covariance)
-    spread[..., :2, :] += drift * spread[..., 2:, :]
-    spread[..., 2:, :] *= fade
-    spread[..., :2] += drift * spread[..., 2:]
-    spread[..., 2:] *= fade
+    step = motion.transition[:, None]
+    carried = (step @ mean[..., None])[..., 0]
+    spread = step @ covariance @ np.swapaxes(step, -1, -2)
     spread += motion.noise[:, None]
     return carried, spread
 
