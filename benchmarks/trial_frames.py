@@ -9,10 +9,9 @@ A trial-frame is one frame of one trial with so many people. Three kinds of work
   tracker      the whole of it: association, and a life cycle that finds out who is there
 
 The product's filter and its association take all trials as one array, the latter in NumPy and, as
-`fast`, compiled by numba. Its tracker does as well: each trial is a room of its own with its own
-sensor, the rooms stand a kilometer apart, and gates see to the rest. filterpy (linear, positions)
-and Stone Soup (extended, bearing and range) run one trial, as they would run each of many.
-Contenders take turns, so that other work slows all alike; medians.
+`fast`, compiled by numba. Its whole tracker, filterpy (linear, positions) and Stone Soup (extended,
+bearing and range) run one trial, as they would run each of many. Contenders take turns, so that
+other work slows all alike; medians.
 """
 
 from __future__ import annotations
@@ -40,7 +39,6 @@ from tracker.tracking.filter import update
 from tracker.tracking.motion import predict
 
 PERIOD_S, BEARING_STD_RAD, RANGE_STD_M, DENSITY = 0.1, 0.01, 0.05, 0.3
-ROOM_M = 1000.0
 START_COVARIANCE = np.diag([0.01, 0.01, 0.25, 0.25])
 Step = Callable[[int, np.ndarray], None]  # frame, positions (B, N, 2)
 
@@ -89,16 +87,10 @@ def product_association(trials: int, people: int, *, compiled: bool = False) -> 
 
 def product_tracker(trials: int, people: int) -> Step:
     tracker = PersonTracker(Config().replace(motion="cv", outlier_dof=0.0))
-    sensors = np.zeros((trials, people, 3))
-    # A square of rooms, so that nobody is too far from the origin.
-    side = int(np.ceil(np.sqrt(trials)))
-    rooms = ROOM_M * np.stack(np.divmod(np.arange(trials), side), axis=-1)
-    sensors[..., :2] = rooms[:, None]
-    flat = sensors.reshape(-1, 3)
+    sensors = np.zeros((people, 3))
 
     def step(frame: int, xy: np.ndarray) -> None:
-        measured = polar((xy + rooms[:, None]).reshape(-1, 2), flat)
-        tracker.step(round(frame * PERIOD_S * 1e9), measured)
+        tracker.step(round(frame * PERIOD_S * 1e9), polar(xy[0], sensors))
 
     return step
 
@@ -231,7 +223,8 @@ def rates(work: str, people: int, trials: int, seconds: float) -> dict[str, floa
             step(frame, measured)
             spent[name].append(time.perf_counter() - start)
         frame += 1
-    at_once = {name: trials if name in ("product", "fast") else 1 for name in steps}
+    batched = ("product", "fast") if work != "tracker" else ()
+    at_once = {name: trials if name in batched else 1 for name in steps}
     return {name: at_once[name] / float(np.median(times[4:])) for name, times in spent.items()}
 
 
