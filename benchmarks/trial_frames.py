@@ -9,9 +9,9 @@ A trial-frame is one frame of one trial with so many people. Three kinds of work
   tracker      the whole of it: association, and a life cycle that finds out who is there
 
 The product's filter and its association take all trials as one array, the latter in NumPy and, as
-`fast`, compiled by numba. Its whole tracker, filterpy (linear, positions) and Stone Soup (extended,
-bearing and range) run one trial, as they would run each of many. Contenders take turns, so that
-other work slows all alike; medians.
+`fast`, compiled by numba. Its whole tracker, filterpy (linear, positions) and Stone Soup
+(extended, bearing and range) run one trial, as they would run each of many. Contenders take turns,
+so that other work slows all alike; medians.
 """
 
 from __future__ import annotations
