@@ -58,7 +58,12 @@ def monte_carlo_command(
     scenario's own settings hold unless --config or -p says otherwise.
     """
     from tracker.evaluation.monte_carlo import find_scenario, monte_carlo
-    from tracker.evaluation.scenario import SCENARIOS, PeopleScenario, default_config
+    from tracker.evaluation.scenario import (
+        SCENARIOS,
+        FilterScenario,
+        PeopleScenario,
+        default_config,
+    )
     from tracker.evaluation.study import study_as_dict
     from tracker.report.study_table import study_table, write_study
 
@@ -72,7 +77,7 @@ def monte_carlo_command(
             raise ConfigError(f"--paths: the scenario {scenario} has no people who walk.")
         chosen = replace(chosen, recording=str(paths))
     settings = parameters_from(config, param, default_config(chosen))
-    alone = not isinstance(chosen, PeopleScenario)
+    alone = isinstance(chosen, FilterScenario)
     with _executor(1 if alone else jobs, trials) as executor, bar(errors, "Running") as progress:
         study = monte_carlo(
             chosen,

@@ -20,6 +20,7 @@ from tracker.evaluation.cramer_rao import posterior_bound
 from tracker.evaluation.filter_study import filter_errors, prior_covariance
 from tracker.evaluation.known_people import known_people_rows
 from tracker.evaluation.people_trial import people_trial
+from tracker.evaluation.scan_trial import scan_trial
 from tracker.evaluation.scenario import (
     SCENARIOS,
     FilterScenario,
@@ -70,7 +71,11 @@ def run_unit(scenario: Scenario, config: Config, seed: int, first: int, count: i
         return _filter_unit(scenario, config, seed, first, count)
     if isinstance(scenario, KnownPeopleScenario):
         return Unit(known_people_rows(scenario, config, seed, first, count))
-    trials = [people_trial(scenario, config, seed, trial) for trial in range(first, first + count)]
+    numbers = range(first, first + count)
+    if isinstance(scenario, PeopleScenario):
+        trials = [people_trial(scenario, config, seed, trial) for trial in numbers]
+    else:
+        trials = [scan_trial(scenario, config, seed, trial) for trial in numbers]
     return Unit({name: np.array([row[name] for row in trials]) for name in trials[0]})
 
 
@@ -103,7 +108,8 @@ def monte_carlo(
         )
     name, scenario = find_scenario(scenario)
     config = default_config(scenario) if config is None else config
-    size = _PEOPLE_UNIT if isinstance(scenario, PeopleScenario) else _BATCH_UNIT
+    is_batch = isinstance(scenario, (FilterScenario, KnownPeopleScenario))
+    size = _BATCH_UNIT if is_batch else _PEOPLE_UNIT
     starts = range(0, trials, size)
     arguments = [(scenario, config, seed, first, min(size, trials - first)) for first in starts]
     units = []
@@ -111,10 +117,10 @@ def monte_carlo(
         units.append(unit)
         progress(len(units) / len(arguments))
     rows = {key: np.concatenate([unit.rows[key] for unit in units]) for key in units[0].rows}
-    if isinstance(scenario, PeopleScenario):
-        return PeopleStudy(name, scenario, config, seed, rows)
     if isinstance(scenario, KnownPeopleScenario):
         return KnownPeopleStudy(name, scenario, config, seed, rows)
+    if not isinstance(scenario, FilterScenario):
+        return PeopleStudy(name, scenario, config, seed, rows)
     means = {
         key: np.sum([unit.sums[key] for unit in units], axis=0) / trials for key in units[0].sums
     }

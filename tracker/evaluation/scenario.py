@@ -156,7 +156,42 @@ class KnownPeopleScenario:
     parameters: Parameters = ()
 
 
-Scenario = FilterScenario | KnownPeopleScenario | PeopleScenario
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScanScenario:
+    """A restaurant drawn at random; a ray-cast laser sees people, tables and walls.
+
+    All of the pipeline is at work but the hand models, in whose place the truth shows hands.
+
+    Attributes:
+        title: One sentence.
+        duration_s: Of one trial.
+        rate_hz: Frames each second; each has a scan of its own.
+        people: How many, from and to; drawn anew for each trial.
+        sitting_share: How many of them sit at a table; the others walk and stop.
+        pause_s: Mean of their stops.
+        hand_up_s: How long a hand stays up, from and to.
+        hand_down_s: How long it stays down, from and to.
+        detection_probability: Of a raised hand that is in the picture and not hidden.
+        clutter_per_frame: Mean number of raised hands that nobody raised.
+        landmark_std_px: Noise of a hand's place in the picture.
+        parameters: Names and values that the pipeline is set to, where they are not its defaults.
+    """
+
+    title: str
+    duration_s: float = 120.0
+    rate_hz: float = 10.0
+    people: tuple[int, int] = (3, 6)
+    sitting_share: float = 0.4
+    pause_s: float = 20.0
+    hand_up_s: tuple[float, float] = (2.0, 6.0)
+    hand_down_s: tuple[float, float] = (5.0, 40.0)
+    detection_probability: float = 0.9
+    clutter_per_frame: float = 0.02
+    landmark_std_px: float = 2.0
+    parameters: Parameters = ()
+
+
+Scenario = FilterScenario | KnownPeopleScenario | PeopleScenario | ScanScenario
 
 _MATCHED = _parameters(motion="cv", acceleration_density=0.3, outlier_dof=0.0)
 _HEAVY_TAILED = _parameters(motion="cv", acceleration_density=0.3)
@@ -220,6 +255,9 @@ SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
             scan_detection_probability=0.9,
             scan_clutter_per_frame=1.0,
             **_HANDS,
+        ),
+        "hands-down-scans": ScanScenario(
+            title="The same in a furnished room, with people found in ray-cast scans.",
         ),
         "rough": PeopleScenario(
             title="A turning robot: latency, pose noise, range outliers, missing ranges.",

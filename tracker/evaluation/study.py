@@ -14,7 +14,12 @@ from tracker.containers import FloatArray
 from tracker.evaluation.consistency import mean_bounds
 from tracker.evaluation.cramer_rao import posterior_bound
 from tracker.evaluation.filter_study import prior_covariance
-from tracker.evaluation.scenario import FilterScenario, KnownPeopleScenario, PeopleScenario
+from tracker.evaluation.scenario import (
+    FilterScenario,
+    KnownPeopleScenario,
+    PeopleScenario,
+    ScanScenario,
+)
 
 #: A filter is judged once its first second, in which it knows what it was told, is over.
 SETTLED_S = 1.0
@@ -160,7 +165,7 @@ class KnownPeopleStudy:
 
 @dataclass(frozen=True, eq=False)
 class PeopleStudy:
-    """Trials of a `PeopleScenario`.
+    """Trials of a `PeopleScenario` or a `ScanScenario`.
 
     Attributes:
         name: Of the scenario.
@@ -171,7 +176,7 @@ class PeopleStudy:
     """
 
     name: str
-    scenario: PeopleScenario
+    scenario: PeopleScenario | ScanScenario
     config: Config
     seed: int
     rows: dict[str, FloatArray]
