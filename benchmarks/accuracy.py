@@ -56,7 +56,12 @@ def compare(name: str, scenes: int, seconds: float, seed: int) -> tuple[dict, di
             for who, tracker in trackers.items():
                 begin = time.perf_counter()
                 if isinstance(tracker, PersonTracker):
-                    tracks = tracker.step(truth.stamp_ns, sensed.measurements, view=sensed.view)
+                    tracks = tracker.step(
+                        truth.stamp_ns,
+                        sensed.measurements,
+                        view=sensed.view,
+                        scan_view=sensed.scan_view,
+                    )
                 else:
                     tracks = tracker.step(truth.stamp_ns, sensed.measurements)
                 spent[who] += time.perf_counter() - begin

@@ -78,6 +78,20 @@ class CameraModel:
         ideal = lens.undistortPoints(points[:, None, :], matrix, coefficients, P=matrix)
         return np.asarray(ideal, dtype=np.float64).reshape(-1, 2)
 
+    def horizontal_span_rad(self, width_px: int) -> tuple[float, float]:
+        """Bearings of the picture's right and left edge, distortion aside.
+
+        Args:
+            width_px: Of the full image.
+
+        Returns:
+            Counter-clockwise from the optical axis: the right edge's, then the left edge's.
+        """
+        return (
+            -float(np.arctan((width_px - self.cx) / self.fx)),
+            float(np.arctan(self.cx / self.fx)),
+        )
+
     def rays(self, pixels: ArrayLike) -> FloatArray:
         """Unit vectors along which pixels look, in the camera's body frame (x forward).
 

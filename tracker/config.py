@@ -170,6 +170,11 @@ class Config(BaseModel):
         True, "Person-sized segments keep customers alive and in place while their hand is down.",
         group="ranging", live=True,
     )  # fmt: skip
+    background_after_s: float = _parameter(
+        30.0, "What has stood exactly still in the scan for so long, and is no customer, is "
+        "furniture and sustains nobody, until the place is seen free; 0 learns no furniture.",
+        unit="s", group="ranging", live=True, ge=0.0, le=3600.0,
+    )  # fmt: skip
     range_std_m: float = _parameter(
         0.08, "Range noise of a person in the scan: the scanner's own, and legs are no point.",
         unit="m", group="ranging", live=True, gt=0.0, le=2.0,

@@ -17,9 +17,9 @@ from tracker.containers import CameraImage, FloatArray, FrameResult, Scan
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform
 from tracker.perception.detector import HandDetector
-from tracker.ranging import body_pose, measure_people
+from tracker.ranging import Background, body_pose, measure_people
 from tracker.rate_limiter import RateLimiter
-from tracker.tracking import PersonTracker, approach_pose, customer_pose
+from tracker.tracking import PersonTracker, View, approach_pose, customer_pose
 from tracker.transforms import StampedTransform, TransformBuffer, Transforms
 
 #: Scans remembered, and images that may wait at a time; older ones give way.
@@ -59,6 +59,7 @@ class Pipeline:
         self._scans: deque[Scan] = deque(maxlen=_SCANS_KEPT)
         self._waiting: deque[CameraImage] = deque(maxlen=_IMAGES_WAITING)
         self._sustained_by: Scan | None = None
+        self._background = Background()
         self._last_stamp_ns = -1
         self._camera_pose: RigidTransform | None = None
         self._notes: list[str] = []
@@ -133,10 +134,19 @@ class Pipeline:
             laser_pose,
             self.config,
             sustain=scan is not self._sustained_by,
+            background=self._background if self.config.background_after_s > 0.0 else None,
         )
         self._sustained_by = scan
         robot_xy_m = fixed_from_camera.planar[:2]
-        tracks = self.tracker.step(image.stamp_ns, measurements, robot_xy_m)
+        tracks = self.tracker.step(
+            image.stamp_ns,
+            measurements,
+            robot_xy_m,
+            view=self._camera_view(image, fixed_from_camera),
+            scan_view=self._scan_view(scan, laser_pose),
+        )
+        customers_xy_m = tracks.mean[tracks.confirmed, :2]
+        self._background.spare(customers_xy_m, self.config.same_person_distance_m)
         pose = approach = None
         if is_located:
             pose = customer_pose(tracks, robot_xy_m, self.config.fixed_frame, self.config)
@@ -169,8 +179,9 @@ class Pipeline:
         self.detector.configure(config)
 
     def reset(self) -> None:
-        """Forget people, scans, moving transforms and waiting images."""
+        """Forget people, furniture, scans, moving transforms and waiting images."""
         self.tracker.reset()
+        self._background.reset()
         self.detector.reset()
         self.transforms.clear()
         self._limiter.reset()
@@ -183,6 +194,7 @@ class Pipeline:
         back_s = (self._last_stamp_ns - image.stamp_ns) / 1e9
         self._notes.append(f"stamps jumped back by {back_s:.3f} s: tracks were reset")
         self.tracker.reset()
+        self._background.reset()
         self.detector.reset()
         self.transforms.forget_after(image.stamp_ns)
         self._scans = deque(
@@ -218,8 +230,29 @@ class Pipeline:
                 "the first transform has come: tracks begin anew in the fixed frame"
             )
             self.tracker.reset()
+            self._background.reset()
         self._camera_pose = body_pose(found, frame, self.config.camera_axes)
         return self._camera_pose, True
+
+    def _camera_view(self, image: CameraImage, fixed_from_camera: RigidTransform) -> View:
+        """Where hands could be seen."""
+        right_rad, left_rad = self.camera.horizontal_span_rad(image.width)
+        if self.config.bearing_convention == "spec":
+            right_rad, left_rad = -left_rad, -right_rad
+        return View.between(
+            fixed_from_camera.planar, right_rad, left_rad, self.config.person_range_max_m
+        )
+
+    def _scan_view(self, scan: Scan | None, laser_pose: FloatArray | None) -> View | None:
+        """Where the scan could show people; None where there is none, or it is not asked."""
+        if scan is None or laser_pose is None or not self.config.scan_sustains:
+            return None
+        first_rad, last_rad = sorted(scan.angles_rad[[0, -1]])
+        half_beam_rad = abs(scan.angle_increment_rad) / 2
+        range_max_m = min(scan.range_max_m, self.config.person_range_max_m)
+        return View.between(
+            laser_pose, first_rad - half_beam_rad, last_rad + half_beam_rad, range_max_m
+        )
 
     def _nearest_scan(
         self, stamp_ns: int, fixed_from_camera: RigidTransform, is_located: bool

@@ -23,11 +23,13 @@ class Sensed:
 
     Attributes:
         measurements: Raised hands, clutter among them, then clusters of the scan, if any.
-        view: Where the robot believes to be, and what it can see from there.
+        view: Where the robot believes to be, and what its camera can see from there.
+        scan_view: What its laser can see; None without one.
     """
 
     measurements: Measurements
     view: View
+    scan_view: View | None
 
 
 def sense(
@@ -71,7 +73,6 @@ def sense(
     pose_std = [scenario.pose_std_m, scenario.pose_std_m, np.deg2rad(scenario.pose_std_deg)]
     pose_covariance = np.diag(np.square(pose_std))
     view_rad = float(np.deg2rad(scenario.field_of_view_deg))
-    all_around = 2 * np.pi if scenario.scan_detection_probability else view_rad
     for frame, pose in enumerate(poses):
         hands, clusters = hand_seen[frame], cluster_seen[frame]
         false_hands = _clutter(scenario, rng, scenario.clutter_per_frame)
@@ -99,7 +100,11 @@ def sense(
             ),
         )
         known = np.broadcast_to(pose_covariance, (len(measured), 3, 3))
-        yield Sensed(replace(measured, sensor_pose_covariance=known), View(pose, all_around))
+        yield Sensed(
+            replace(measured, sensor_pose_covariance=known),
+            View(pose, view_rad),
+            View(pose, 2 * np.pi) if scenario.scan_detection_probability else None,
+        )
 
 
 def _hidden(

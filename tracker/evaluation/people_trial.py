@@ -151,7 +151,11 @@ def people_trial(
     tracker, scores = PersonTracker(config), TrialScores(config)
     for truth, sensed in draw_people_trial(scenario, seed, trial):
         tracks = tracker.step(
-            truth.stamp_ns, sensed.measurements, sensed.view.sensor_pose[:2], view=sensed.view
+            truth.stamp_ns,
+            sensed.measurements,
+            sensed.view.sensor_pose[:2],
+            view=sensed.view,
+            scan_view=sensed.scan_view,
         )
         scores.add(truth, tracks)
     return scores.row()

@@ -15,7 +15,7 @@ from tracker.evaluation.trial_seed import trial_rng
 from tracker.pipeline import Pipeline
 from tracker.simulation.camera_view import hands_in_view
 from tracker.simulation.lidar import ScanSimulator
-from tracker.simulation.motion import People, people_at
+from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
 from tracker.simulation.restaurant import draw_restaurant
 from tracker.simulation.scene import Scene
@@ -77,10 +77,10 @@ def play_scan_trial(
         time_s = number / scenario.rate_hz
         stamp_ns = start_ns + round(time_s * 1e9)
         people = people_at(scene, time_s)
-        detector.people = people
+        in_view = hands_in_view(scene, view, people)
+        detector.people, detector.in_view = people, in_view
         pipeline.add_scan(scanner.scan(stamp_ns, map_from_laser(scene, time_s), people))
         result = pipeline.process(CameraImage(stamp_ns, camera.frame, nothing))
-        in_view = hands_in_view(scene, view, people)
         yield Truth(stamp_ns, people.id, people.xy_m, people.hand_up, in_view), result
 
 
@@ -91,13 +91,15 @@ class _ShownHands:
         self, scenario: ScanScenario, scene: Scene, view: Viewpoint, rng: np.random.Generator
     ) -> None:
         self._scenario, self._scene, self._view, self._rng = scenario, scene, view, rng
-        self.people: People = people_at(scene, 0.0)
+        self.people = people_at(scene, 0.0)
+        self.in_view = hands_in_view(scene, view, self.people)
 
     def find(self, image: CameraImage) -> Hands:
         return show_hands(
             self._scene,
             self._view,
             self.people,
+            self.in_view,
             self._rng,
             detection_probability=self._scenario.detection_probability,
             clutter_per_frame=self._scenario.clutter_per_frame,

@@ -1,11 +1,13 @@
 """Scan -> how far a hand's owner is, and who else stands there."""
 
+from tracker.ranging.background import Background
 from tracker.ranging.beams import beam_index, median_range
 from tracker.ranging.measuring import measure_people
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.rays import body_pose, hand_rays
 
 __all__ = [
+    "Background",
     "PersonClusters",
     "beam_index",
     "body_pose",

@@ -8,6 +8,7 @@ from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measurements, Scan
 from tracker.geometry import RigidTransform, normalize_angle
+from tracker.ranging.background import Background
 from tracker.ranging.hand_pairs import pair_hands
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.person_range import owners
@@ -27,6 +28,7 @@ def measure_people(
     config: Config,
     *,
     sustain: bool = True,
+    background: Background | None = None,
 ) -> Measurements:
     """Turn one image's hands and the scan beside it into measurements in the fixed frame.
 
@@ -39,9 +41,12 @@ def measure_people(
         config: The ranging group.
         sustain: Whether the scan's other person clusters are measurements too. One scan may serve
             several images; it speaks for itself only once.
+        background: What has been learnt of the room so far, and learns from this scan; None takes
+            whatever is person-sized for a person.
 
     Returns:
-        First one row for each hand, then the clusters that no raised hand has claimed.
+        First one row for each hand, then the clusters that no raised hand has claimed and that are
+        no background.
     """
     rays = hand_rays(hands, camera, fixed_from_camera, config)
     pair = pair_hands(hands)
@@ -55,6 +60,11 @@ def measure_people(
             body_width_m=config.body_width_m,
             range_max_m=config.person_range_max_m,
         )
+    is_background = np.zeros(len(people), dtype=bool)
+    if background is not None and scan is not None and laser_pose is not None:
+        if sustain:
+            background.observe(scan, laser_pose, people.xy_m, config.background_after_s)
+        is_background = background.holds(people.xy_m)
     if config.ranging == "spec":
         claimed = np.full(len(hands), -1, dtype=np.int64)
         range_m = np.full(len(hands), np.nan)
@@ -63,7 +73,7 @@ def measure_people(
                 rays, scan, laser_pose, config.scan_window_beams, config.segment_jump_m
             )
     else:
-        claimed = owners(rays, hands, camera, people, config.body_width_m)
+        claimed = owners(rays, hands, camera, people, is_background, config.body_width_m)
         range_m = np.full(len(hands), np.nan)
 
     from_hands = _hand_measurements(rays, range_m, hands, pair, config)
@@ -79,9 +89,12 @@ def measure_people(
             hand=np.flatnonzero(seen),
         )
         from_hands = Measurements.concatenate(from_hands[~seen], of_bodies)
+    callers = claimed[hands.raised & seen]
+    if background is not None:
+        background.free(people.xy_m[callers])
     if not sustain or not config.scan_sustains or len(people) == 0:
         return from_hands
-    free = np.setdiff1d(np.arange(len(people)), claimed[hands.raised])
+    free = np.setdiff1d(np.flatnonzero(~is_background), callers)
     from_scan = _body_measurements(
         people.xy_m[free], rays.origin, config, raised=False, person=free, hand=-1
     )

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.camera import CameraModel
-from tracker.containers import FloatArray, Hands, IntArray
+from tracker.containers import BoolArray, FloatArray, Hands, IntArray
 from tracker.ranging.people import PersonClusters
 from tracker.ranging.rays import HandRays
 
@@ -21,11 +21,18 @@ _PALM_LENGTH_M = 0.095
 _BESIDE_M, _BESIDE_STD_M = 0.3, 0.2
 #: Relative spread of a range told from a palm's size: people differ, palms tilt (guess).
 _RANGE_SPREAD = 0.3
+#: Furniture is so much unlikelier than people to raise a hand: two standard deviations (guess).
+_BACKGROUND_MISFIT = 4.0
 _WRIST, _THUMB_TIP, _MIDDLE_ROOT, _PINKY_ROOT = 0, 4, 9, 17
 
 
 def owners(
-    rays: HandRays, hands: Hands, camera: CameraModel, people: PersonClusters, body_width_m: float
+    rays: HandRays,
+    hands: Hands,
+    camera: CameraModel,
+    people: PersonClusters,
+    is_background: BoolArray,
+    body_width_m: float,
 ) -> IntArray:
     """For each hand the cluster within half a body's width of its ray that fits it best.
 
@@ -34,6 +41,8 @@ def owners(
         hands: The same hands in the picture.
         camera: Intrinsics of the full image.
         people: Clusters in the fixed frame of the rays.
+        is_background: Shape (C,): which of them have stood still for long. They own a hand only
+            where nobody else fits it nearly as well.
         body_width_m: Half of it, to each side of the ray, is searched.
 
     Returns:
@@ -47,6 +56,7 @@ def owners(
     offset, range_m = _owner_offset(hands), _range_from_size(hands, camera)
     misfit = ((across - offset[:, None]) / _BESIDE_STD_M) ** 2
     misfit += (np.log(np.maximum(along, 0.05) / range_m[:, None]) / _RANGE_SPREAD) ** 2
+    misfit += _BACKGROUND_MISFIT * is_background
     best = np.argmin(np.where(beside, misfit, np.inf), axis=1)
     return np.where(beside.any(axis=1), best, -1)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from tracker.containers import FloatArray
@@ -50,7 +52,7 @@ def draw_restaurant(
     seats = [(table, side) for table in tables for side in (0.0, np.pi / 2, np.pi, -np.pi / 2)]
     free_seats = [seats[row] for row in rng.permutation(len(seats))]
     obstacles = [np.broadcast_to(table, (len(stamps_s), 2)) for table in tables]
-    guests = []
+    guests: list[dict[str, Any]] = []
     is_sitting = rng.random(people) < sitting_share
     for sits in sorted(is_sitting.tolist(), reverse=True):  # who walks makes way for who sits
         if sits:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tracker.containers import FloatArray, Hands
-from tracker.simulation.camera_view import hands_in_view, is_from_behind, look_of
+from tracker.containers import BoolArray, FloatArray, Hands
+from tracker.simulation.camera_view import is_from_behind, look_of
 from tracker.simulation.figure import Look, raised_hand_landmarks
 from tracker.simulation.motion import People
 from tracker.simulation.projection import Viewpoint
@@ -25,6 +25,7 @@ def show_hands(
     scene: Scene,
     view: Viewpoint,
     people: People,
+    in_view: BoolArray,
     rng: np.random.Generator,
     *,
     detection_probability: float,
@@ -37,12 +38,13 @@ def show_hands(
         scene: Who is there.
         view: The camera.
         people: Where everybody is, and how far hands are up.
+        in_view: Shape (P,): whose raised hand falls into the picture, from `hands_in_view`.
         rng: All randomness.
         detection_probability: Of a hand that can be seen.
         clutter_per_frame: Mean number of raised hands that nobody raised, anywhere in the room.
         landmark_std_px: Noise of a hand as a whole; that of each landmark is half of it.
     """
-    is_shown = hands_in_view(scene, view, people) & people.hand_up
+    is_shown = in_view & people.hand_up
     is_shown &= rng.random(len(is_shown)) < detection_probability
     looks = [look_of(person) for person in scene.people]
     shapes, right = [], []

@@ -104,7 +104,8 @@ def still_there(people: People, stamp_ns: int, config: Config) -> BoolArray:
 
     A tentative track goes as soon as it cannot be confirmed within its window any more; a
     confirmed one once nothing has shown it for `delete_after_s`, sooner while it has few
-    detections, or once no hand has been up for `forget_after_s`.
+    detections, or once no hand has been up for `forget_after_s`. A bystander is remembered for as
+    long as it has been seen before, and no longer than a customer.
     """
     patience_s = config.delete_after_s * np.minimum(
         people.detections / config.mature_detections, 1.0
@@ -113,13 +114,16 @@ def still_there(people: People, stamp_ns: int, config: Config) -> BoolArray:
     alive = (people.missing_s <= patience_s + 1e-9) & (
         people.called_ns >= stamp_ns - round(config.forget_after_s * 1e9)
     )
-    if people.confirmed.all():
+    known_s = (people.seen_ns - people.born_ns) / 1e9
+    remembered = people.missing_s <= np.minimum(known_s, config.delete_after_s) + 1e-9
+    alive = np.where(people.is_customer, alive, remembered)
+    if (people.confirmed | ~people.is_customer).all():
         return alive
     if config.confirmation == "m_of_n":
         hopeful = _may_be_confirmed(people.recent, config)
     else:
         hopeful = alive & (people.existence >= _EXISTENCE_MIN)
-    return np.where(people.confirmed, alive, hopeful)
+    return np.where(people.confirmed | ~people.is_customer, alive, hopeful)
 
 
 def _may_be_confirmed(recent: BoolArray, config: Config) -> BoolArray:

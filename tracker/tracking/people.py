@@ -17,7 +17,7 @@ class People:
     """Stacked state of all tracks; row i of each array is the same person.
 
     Attributes:
-        id: Shape (N,), int64.
+        id: Shape (N,), int64; 0 for bystanders, whose hand has never been up.
         belief: Where they are, in each mode of motion.
         existence: Shape (N,): probability that somebody is there.
         confirmed: Shape (N,), bool.
@@ -51,6 +51,18 @@ class People:
 
     def __getitem__(self, rows: Any) -> People:
         return People(*(getattr(self, name)[rows] for name in _NAMES))
+
+    @property
+    def is_customer(self) -> BoolArray:
+        """Shape (N,): a hand has been up."""
+        return self.id > 0
+
+    def customers(self) -> People:
+        """Those with an identity, in its order."""
+        if (np.diff(self.id, prepend=0) > 0).all():
+            return self  # nearly always, without a scan
+        order = np.argsort(self.id, kind="stable")
+        return self[order[np.count_nonzero(self.id == 0) :]]
 
     @staticmethod
     def begin(

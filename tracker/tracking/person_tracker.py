@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tracker.config import Config
-from tracker.containers import FloatArray, IntArray, Measurements, Tracks, check_stamp
+from tracker.containers import BoolArray, FloatArray, IntArray, Measurements, Tracks, check_stamp
 from tracker.tracking.admission import is_close, once_per_person, usable, with_hand_bias
 from tracker.tracking.association import assign, log_odds
 from tracker.tracking.converted import convert
@@ -38,7 +38,9 @@ class PersonTracker:
     """Kalman-filtered customers, from raised hands and the people in the scan.
 
     Raised hands create customers and feed their streaks; everything else only sustains and refines
-    those who are there. Identities count from 1 and are never reused by one tracker.
+    those who are there. Bystanders, whom only the scan shows, are followed within: what is known
+    to be somebody else's is not taken for a customer's. Identities count from 1 and are never
+    reused by one tracker.
 
     Args:
         config: The tracking and selection groups.
@@ -71,7 +73,7 @@ class PersonTracker:
     @property
     def has_tracks(self) -> bool:
         """Whether anybody is tracked now."""
-        return len(self._people) > 0
+        return bool(self._people.is_customer.any())
 
     def reset(self) -> None:
         """Forget everybody; identities go on counting."""
@@ -86,6 +88,7 @@ class PersonTracker:
         robot_xy_m: ArrayLike = (0.0, 0.0),
         *,
         view: View | None = None,
+        scan_view: View | None = None,
     ) -> Tracks:
         """Take in everything that was measured at one instant.
 
@@ -96,7 +99,8 @@ class PersonTracker:
             stamp_ns: Sensor time of the measurements.
             measurements: In the fixed frame; may be empty.
             robot_xy_m: Shape (2,): where the robot is, for `selection: nearest`.
-            view: What the sensors could see; None means everybody.
+            view: Where the camera could see hands; None means everywhere.
+            scan_view: Where the scan could show people; None where there is no scan.
 
         Returns:
             Everybody, tentative ones included (`confirmed` tells), with the selected customer.
@@ -112,12 +116,12 @@ class PersonTracker:
         dt_s = min(dt_s, 10.0 * max(self._config.delete_after_s, self._config.forget_after_s))
         raised, others = self._admit(measurements, dt_s)
 
-        people, visible = self._predict(dt_s, view)
+        people, in_camera, in_view = self._predict(dt_s, view, scan_view)
         hand_chance = np.where(people.streaks.missed == 0, 1.0, _RAISES_AGAIN)
         belief, existence, called_by = self._update(
-            people.belief, people.existence, raised, visible * hand_chance
+            people.belief, people.existence, raised, in_camera * hand_chance
         )
-        belief, existence, shown_by = self._update(belief, existence, others, visible)
+        belief, existence, shown_by = self._update(belief, existence, others, in_view)
         is_called, is_shown = called_by >= 0, shown_by >= 0
         is_seen = is_called | is_shown
         hand = np.full(len(people), -1, dtype=np.int64)
@@ -133,18 +137,23 @@ class PersonTracker:
             belief=belief,
             existence=existence,
             hand=hand,
+            id=self._ids(people, is_called),
         )
+        seen_xy = belief.merged()[0][is_seen, :2]
         people = merge_twins(people, is_seen, self._config)
         if np.count_nonzero(is_called) < len(raised):
             called_xy = belief.merged()[0][is_called, :2]
             people = people.append(self._newcomers(raised, called_by, called_xy, stamp_ns))
+        if np.count_nonzero(is_shown) < len(others):
+            people = people.append(self._bystanders(others, shown_by, seen_xy, stamp_ns))
         keep = still_there(people, stamp_ns, self._config)
         if not keep.all():
             people = people[keep]
 
         self._people, self._stamp_ns = people, stamp_ns
         robot_xy = np.asarray(robot_xy_m, dtype=np.float64)
-        return people.as_tracks(stamp_ns, self.selector.choose(people, stamp_ns, robot_xy))
+        customers = people.customers()
+        return customers.as_tracks(stamp_ns, self.selector.choose(customers, stamp_ns, robot_xy))
 
     def _nobody(self) -> People:
         return People.nobody(self._config.confirm_window, _modes(self._config))
@@ -162,13 +171,20 @@ class PersonTracker:
         raised = once_per_person(raised, self._config)
         return with_hand_bias(raised, dt_s, self._config), others
 
-    def _predict(self, dt_s: float, view: View | None) -> tuple[People, FloatArray]:
+    def _predict(
+        self, dt_s: float, view: View | None, scan_view: View | None
+    ) -> tuple[People, FloatArray, FloatArray]:
+        """Everybody at this instant; visible to the camera, and to anything."""
         people = self._people
         belief = predict_modes(people.belief, motion_over(dt_s, self._config))
-        visible = np.ones(len(people))
-        if view is not None:
-            visible = visibility(belief.merged()[0][:, :2], view)
-        return fade(people, belief, dt_s, visible, self._config), visible
+        in_camera = np.ones(len(people))
+        if view is not None or scan_view is not None:
+            xy_m = belief.merged()[0][:, :2]
+            in_camera = visibility(xy_m, view)
+        in_view = in_camera
+        if scan_view is not None:
+            in_view = np.maximum(in_camera, visibility(xy_m, scan_view))
+        return fade(people, belief, dt_s, in_view, self._config), in_camera, in_view
 
     def _update(
         self, belief: Belief, existence: FloatArray, claims: Measurements, visible: FloatArray
@@ -192,32 +208,59 @@ class PersonTracker:
         evidence[rows] = odds[hits] + np.log(1.0 - chance[rows])
         return belief, believe(existence, evidence), got
 
+    def _ids(self, people: People, is_called: BoolArray) -> IntArray:
+        """Bystanders who raise a hand become customers."""
+        new = is_called & ~people.is_customer
+        if not new.any():
+            return people.id
+        ids: IntArray = people.id.copy()
+        ids[new] = self._next_ids(int(np.count_nonzero(new)))
+        return ids
+
+    def _next_ids(self, count: int) -> IntArray:
+        first, self._next_id = self._next_id, self._next_id + count
+        return np.arange(first, self._next_id, dtype=np.int64)
+
     def _newcomers(
         self, raised: Measurements, called_by: IntArray, called_xy_m: FloatArray, stamp_ns: int
     ) -> People:
         """People behind raised hands that belong to nobody known."""
+        # The second hand of somebody whose first hand has just been counted is nobody new.
+        people, left = self._begin(raised, called_by, called_xy_m, stamp_ns)
+        people = people.replace(id=self._next_ids(len(people)))
+        everyone = np.ones(len(people), dtype=bool)
+        return count_detections(people, everyone, everyone, stamp_ns, self._config, hand=left.hand)
+
+    def _bystanders(
+        self, others: Measurements, shown_by: IntArray, seen_xy_m: FloatArray, stamp_ns: int
+    ) -> People:
+        """Whoever else the scan shows; a lowered hand alone is nobody."""
+        # A second cluster beside somebody seen is their other leg.
+        people, left = self._begin(others, shown_by, seen_xy_m, stamp_ns)
+        return people[left.hand < 0]
+
+    def _begin(
+        self, claims: Measurements, taken: IntArray, seen_xy_m: FloatArray, stamp_ns: int
+    ) -> tuple[People, Measurements]:
+        """Nobody's claims, apart from the people seen already, and the people behind them."""
         config = self._config
-        is_left = np.ones(len(raised), dtype=bool)
-        is_left[called_by[called_by >= 0]] = False
-        left = raised[is_left]
+        is_left = np.ones(len(claims), dtype=bool)
+        is_left[taken[taken >= 0]] = False
+        left = claims[is_left]
         mean, covariance = initial_state(
             left,
             unknown_range_m=config.unknown_range_m,
             unknown_range_std_m=config.unknown_range_std_m,
             speed_std_mps=config.initial_speed_std_mps,
         )
-        # The second hand of somebody whose first hand has just been counted is nobody new.
-        new = ~is_close(mean[:, :2], called_xy_m, config.same_person_distance_m).any(axis=1)
-        count = int(np.count_nonzero(new))
-        ids = np.arange(self._next_id, self._next_id + count, dtype=np.int64)
-        self._next_id += count
+        new = ~is_close(mean[:, :2], seen_xy_m, config.same_person_distance_m).any(axis=1)
         belief = Belief.begin(
             mean[new], covariance[new], _modes(config), config.stand_speed_std_mps
         )
-        existence = np.full(count, BIRTH_EXISTENCE)
+        count = int(np.count_nonzero(new))
+        ids, existence = np.zeros(count, dtype=np.int64), np.full(count, BIRTH_EXISTENCE)
         people = People.begin(ids, belief, stamp_ns, config.confirm_window, existence)
-        everyone = np.ones(count, dtype=bool)
-        return count_detections(people, everyone, everyone, stamp_ns, config, hand=left.hand[new])
+        return people, left[new]
 
 
 _NOTHING = Measurements.none()

@@ -13,34 +13,43 @@ _SILENT_S = 0.5
 
 
 def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
-    """Join each silent track with the seen one closer than `same_person_distance_m`, if any.
+    """Join each silent customer with the seen track closer than `same_person_distance_m`, if any.
 
-    The older identity goes on, with what the seen track knows of place, hand and time.
+    The older identity goes on, with what the seen track knows of place, hand and time. A bystander
+    who was there while the customer was still seen is somebody else.
 
     Args:
-        people: Everybody, rows by age.
+        people: Everybody.
         is_seen: Shape (N,): any measurement was assigned in this frame.
         config: `same_person_distance_m`.
     """
-    silent = np.flatnonzero(people.missing_s > _SILENT_S)
+    silent = np.flatnonzero((people.missing_s > _SILENT_S) & people.is_customer)
     seen = np.flatnonzero(is_seen)
     if len(silent) == 0 or len(seen) == 0:
         return people
     mean, _ = people.belief.merged()
     apart = mean[silent, None, :2] - mean[seen, :2]
     distance = np.hypot(apart[..., 0], apart[..., 1])
+    is_other = ~people.is_customer[seen] & (people.born_ns[seen] <= people.seen_ns[silent, None])
+    distance[is_other] = np.inf
     nearest = distance.argmin(axis=1)
     close = distance[np.arange(len(silent)), nearest] < config.same_person_distance_m
     if not close.any():
         return people
     keep = np.ones(len(people), dtype=bool)
     heir = np.arange(len(people))  # whose place and hand each track has from now on
-    for old, young in zip(silent[close], seen[nearest[close]], strict=True):
-        if old < young and keep[young]:
-            heir[old] = young
-            keep[young] = False
+    for mute, heard in zip(silent[close], seen[nearest[close]], strict=True):
+        older = not people.is_customer[heard] or people.id[mute] < people.id[heard]
+        if older and keep[heard]:
+            heir[mute] = heard
+            keep[heard] = False
         else:
-            keep[old] = False
-    ids, born_ns = people.id[keep], people.born_ns[keep]
-    confirmed = (people.confirmed | people.confirmed[heir])[keep]
-    return people[heir[keep]].replace(id=ids, born_ns=born_ns, confirmed=confirmed)
+            keep[mute] = False
+    # What a customer has been counts on.
+    return people[heir][keep].replace(
+        id=people.id[keep],
+        born_ns=people.born_ns[keep],
+        confirmed=(people.confirmed | people.confirmed[heir])[keep],
+        detections=np.maximum(people.detections, people.detections[heir])[keep],
+        called_ns=np.maximum(people.called_ns, people.called_ns[heir])[keep],
+    )

@@ -11,6 +11,8 @@ from tracker.geometry import normalize_angle
 
 #: Half a body: who stands this close to the line of sight covers it.
 _HALF_BODY_M = 0.2
+#: A body with its arm: at the edge of the view part of it is seen.
+_ARM_M = 0.3
 #: Somebody in front hides at least from this distance on; nearer they stand side by side.
 _DEPTH_MIN_M = 0.3
 #: Share of the time that somebody behind another is seen nevertheless (guess).
@@ -31,6 +33,15 @@ class View:
     horizontal_fov_rad: float
     range_max_m: float = np.inf
 
+    @staticmethod
+    def between(
+        sensor_pose: FloatArray, first_rad: float, last_rad: float, range_max_m: float = np.inf
+    ) -> View:
+        """The view between two bearings of the sensor's frame, from the right to the left."""
+        turned = np.array(sensor_pose, dtype=np.float64)
+        turned[2] += (first_rad + last_rad) / 2.0
+        return View(turned, last_rad - first_rad, range_max_m)
+
 
 def visibility(xy_m: FloatArray, view: View | None) -> FloatArray:
     """Chance that nothing but the detector itself keeps people from being detected.
@@ -40,7 +51,8 @@ def visibility(xy_m: FloatArray, view: View | None) -> FloatArray:
         view: None means that everybody is in view.
 
     Returns:
-        Shape (N,): 0 outside the field of view, little behind somebody else, 1 in plain sight.
+        Shape (N,): 0 outside the field of view, between at its edge, little behind somebody else,
+        1 in plain sight.
     """
     if view is None or len(xy_m) == 0:
         return np.ones(len(xy_m))
@@ -48,8 +60,13 @@ def visibility(xy_m: FloatArray, view: View | None) -> FloatArray:
     range_m = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), 0.1)
     bearing = np.arctan2(offset[:, 1], offset[:, 0])
     off_axis = np.abs(normalize_angle(bearing - view.sensor_pose[2]))
-    in_view = (off_axis <= view.horizontal_fov_rad / 2) & (range_m <= view.range_max_m)
+    inside = np.ones(len(xy_m))
+    if view.horizontal_fov_rad < 2.0 * np.pi:
+        # Whoever stands on the edge is half in view.
+        reach = np.arctan2(_ARM_M, range_m)
+        inside = np.clip((view.horizontal_fov_rad / 2 - off_axis) / (2 * reach) + 0.5, 0.0, 1.0)
+    inside = inside * (range_m <= view.range_max_m)
     half_width = _HALF_BODY_M / range_m
     beside = np.abs(normalize_angle(bearing[:, None] - bearing))  # who, by whom
     hidden = (beside < half_width) & (range_m < range_m[:, None] - _DEPTH_MIN_M)
-    return np.where(in_view, np.where(hidden.any(axis=1), _OCCLUDED, 1.0), 0.0)
+    return inside * np.where(hidden.any(axis=1), _OCCLUDED, 1.0)
