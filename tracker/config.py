@@ -154,9 +154,12 @@ class Config(BaseModel):
         unit="s", group="ranging", live=True, gt=0.0, le=10.0,
     )  # fmt: skip
     body_width_m: float = _parameter(
-        0.8, "Person-sized: half of this to each side of the hand's ray is searched, and no "
-        "segment wider than this is a person.",
+        0.8, "Person-sized: no segment of the scan wider than this is a person.",
         unit="m", group="ranging", live=True, gt=0.1, le=2.0,
+    )  # fmt: skip
+    arm_reach_m: float = _parameter(
+        0.6, "The person whose hand is up stands no farther than this to a side of its ray.",
+        unit="m", group="ranging", live=True, gt=0.0, le=2.0,
     )  # fmt: skip
     segment_jump_m: float = _parameter(
         0.15, "Neighboring beams whose points are farther apart belong to different segments.",

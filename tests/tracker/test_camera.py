@@ -107,3 +107,11 @@ def test_a_coefficient_that_is_no_number_is_refused():
 def test_an_unknown_distortion_is_refused_with_the_known_ones(model, coefficients):
     with pytest.raises(ConfigError, match=r"plumb_bob, rational_polynomial, equidistant"):
         CameraModel(FX, FY, CX, CY, coefficients, model)
+
+
+def test_the_picture_s_edges_are_the_bearings_of_their_pixels():
+    camera = CameraModel(460.0, 470.0, 300.0, 240.0)
+    right, left = camera.horizontal_span_rad(640)
+    rays = camera.rays([[640.0, 240.0], [0.0, 240.0]])
+    assert [right, left] == pytest.approx(np.arctan2(rays[:, 1], rays[:, 0]))
+    assert right < 0.0 < left

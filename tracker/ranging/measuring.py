@@ -73,7 +73,7 @@ def measure_people(
                 rays, scan, laser_pose, config.scan_window_beams, config.segment_jump_m
             )
     else:
-        claimed = owners(rays, hands, camera, people, is_background, config.body_width_m)
+        claimed = owners(rays, hands, camera, people, is_background, config.arm_reach_m)
         range_m = np.full(len(hands), np.nan)
 
     from_hands = _hand_measurements(rays, range_m, hands, pair, config)

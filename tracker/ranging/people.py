@@ -64,12 +64,12 @@ def find_people(
         laser_pose: x_m, y_m, yaw_rad of the laser in the fixed frame at the scan's stamp.
         segment_jump_m: Neighboring points farther apart than this part segments.
         body_width_m: Wider segments are background.
-        range_max_m: Farther segments are left alone.
+        range_max_m: Segments all of which is farther are left alone.
 
     Returns:
         The clusters, by angle around the laser.
     """
-    rows = np.flatnonzero(scan.valid & (scan.ranges_m <= range_max_m))
+    rows = np.flatnonzero(scan.valid)
     if len(rows) == 0:
         return PersonClusters.none()
     rows, begins = _segments(scan, rows, segment_jump_m)
@@ -84,6 +84,8 @@ def find_people(
     # The outermost beams miss the edges by up to one spacing in all.
     spacing = range_m[begins] * abs(scan.angle_increment_rad)
     person_sized = (width + spacing >= LEG_WIDTH_MIN_M) & (width <= body_width_m) & (count >= 2)
+    # Judged as a whole: a wall that runs out of range is not cut down to a person.
+    person_sized &= np.minimum.reduceat(range_m, begins) <= range_max_m
     person_sized &= ~_is_seen_through_gap(scan, rows, begins, segment_jump_m)
     middle = np.add.reduceat(points + LEG_RADIUS_M * direction, begins) / count[:, None]
     return _pair_legs(middle[person_sized], width[person_sized])

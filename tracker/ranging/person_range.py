@@ -19,11 +19,17 @@ from tracker.ranging.rays import HandRays
 _PALM_LENGTH_M = 0.095
 #: How far a raised hand stands beside the body's middle, and how much that varies (guesses).
 _BESIDE_M, _BESIDE_STD_M = 0.3, 0.2
-#: Relative spread of a range told from a palm's size: people differ, palms tilt (guess).
-_RANGE_SPREAD = 0.3
+#: Relative spread of a range told from a palm's size, since people differ (guess) ...
+_RANGE_SPREAD = 0.2
+#: ... and noise of a landmark, which tells on small palms.
+_LANDMARK_STD_PX = 1.0
+#: From the index finger's root to the little finger's, in palm lengths (anthropometric tables).
+_PALM_BREADTH = 0.68
+#: 99 of 100 owners fit better (chi-square of two numbers); beyond, the scan does not show them.
+_MISFIT_MAX = 9.2
 #: Furniture is so much unlikelier than people to raise a hand: two standard deviations (guess).
 _BACKGROUND_MISFIT = 4.0
-_WRIST, _THUMB_TIP, _MIDDLE_ROOT, _PINKY_ROOT = 0, 4, 9, 17
+_WRIST, _THUMB_TIP, _INDEX_ROOT, _MIDDLE_ROOT, _PINKY_ROOT = 0, 4, 5, 9, 17
 
 
 def owners(
@@ -32,9 +38,9 @@ def owners(
     camera: CameraModel,
     people: PersonClusters,
     is_background: BoolArray,
-    body_width_m: float,
+    arm_reach_m: float,
 ) -> IntArray:
-    """For each hand the cluster within half a body's width of its ray that fits it best.
+    """For each hand the cluster within an arm's reach of its ray that fits it best.
 
     Args:
         rays: Hands' directions.
@@ -43,19 +49,21 @@ def owners(
         people: Clusters in the fixed frame of the rays.
         is_background: Shape (C,): which of them have stood still for long. They own a hand only
             where nobody else fits it nearly as well.
-        body_width_m: Half of it, to each side of the ray, is searched.
+        arm_reach_m: So far to each side of the ray is searched.
 
     Returns:
-        Shape (H,): rows of `people`; -1 where nobody stands there.
+        Shape (H,): rows of `people`; -1 where nobody stands there whom the hand could belong to.
     """
     if len(people) == 0 or len(hands) == 0:
         return np.full(len(hands), -1, dtype=np.int64)
     heading = rays.bearing_rad + rays.origin[2]
     along, across = ray_coordinates(people.xy_m, rays.origin[:2], heading)
-    beside = (along > 0.0) & (np.abs(across) <= body_width_m / 2)
+    beside = (along > 0.0) & (np.abs(across) <= arm_reach_m)
     offset, range_m = _owner_offset(hands), _range_from_size(hands, camera)
     misfit = ((across - offset[:, None]) / _BESIDE_STD_M) ** 2
-    misfit += (np.log(np.maximum(along, 0.05) / range_m[:, None]) / _RANGE_SPREAD) ** 2
+    spread = np.hypot(_RANGE_SPREAD, _LANDMARK_STD_PX / _palm_px(hands))
+    misfit += (np.log(np.maximum(along, 0.05) / range_m[:, None]) / spread[:, None]) ** 2
+    beside &= misfit <= _MISFIT_MAX
     misfit += _BACKGROUND_MISFIT * is_background
     best = np.argmin(np.where(beside, misfit, np.inf), axis=1)
     return np.where(beside.any(axis=1), best, -1)
@@ -67,19 +75,22 @@ def _owner_offset(hands: Hands) -> FloatArray:
     Whether it is a left or a right hand, seen from the front or from behind: held up beside the
     head, its thumb is on the head's side. A hand seen edge-on tells nothing.
     """
-    palm = np.maximum(_palm_px(hands), 1.0)
+    palm = _palm_px(hands)
     toward = hands.landmarks_px[:, _THUMB_TIP, 0] - hands.landmarks_px[:, _PINKY_ROOT, 0]
     return np.asarray(-_BESIDE_M * np.clip(toward / palm, -1.0, 1.0))
 
 
 def _range_from_size(hands: Hands, camera: CameraModel) -> FloatArray:
     """Range at which an adult's palm would look that long, shape (H,), meters."""
-    return np.asarray(camera.fy * _PALM_LENGTH_M / np.maximum(_palm_px(hands), 1.0))
+    return np.asarray(camera.fy * _PALM_LENGTH_M / _palm_px(hands))
 
 
 def _palm_px(hands: Hands) -> FloatArray:
-    palm = hands.landmarks_px[:, _MIDDLE_ROOT] - hands.landmarks_px[:, _WRIST]
-    return np.asarray(np.linalg.norm(palm, axis=-1))
+    """Length of the palms, shape (H,); by its breadth where a palm tilts away from the camera."""
+    points = hands.landmarks_px
+    length = np.linalg.norm(points[:, _MIDDLE_ROOT] - points[:, _WRIST], axis=-1)
+    breadth = np.linalg.norm(points[:, _INDEX_ROOT] - points[:, _PINKY_ROOT], axis=-1)
+    return np.asarray(np.maximum(np.maximum(length, breadth / _PALM_BREADTH), 1.0))
 
 
 def ray_coordinates(

@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tracker import Config, Hands
 from tracker.camera import CameraModel
 from tracker.geometry import RigidTransform
-from tracker.ranging import measure_people
+from tracker.ranging import Background, measure_people
 
 CAMERA = CameraModel(460.0, 460.0, 320.0, 240.0)
 AT_ORIGIN = RigidTransform()
@@ -119,3 +121,61 @@ def test_the_scan_s_covariance_is_round_whatever_the_range(cast, legs):
     across_m = np.sqrt(found.covariance[0, 0, 0]) * found.values[0, 1]
     assert across_m == pytest.approx(0.1)
     assert np.sqrt(found.covariance[0, 1, 1]) == pytest.approx(0.1)
+
+
+def still_background(scan, *points):
+    """A background that has seen things stand at these points for longer than a minute."""
+    background = Background()
+    for number in range(700):
+        later = replace(scan, stamp_ns=number * 100_000_000)
+        background.observe(later, np.zeros(3), np.array(points, float), 30.0)
+    return background
+
+
+def test_what_has_stood_still_for_long_sustains_nobody(cast, legs):
+    scan = cast(legs(2.0, 0.2) + legs(2.0, -1.0))
+    background = still_background(scan, (2.0, -1.0))
+    found = measure_people(
+        Hands.none(), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config(), background=background
+    )
+    assert positions(found) == pytest.approx(np.array([[2.0, 0.2]]), abs=0.06)
+
+
+def test_who_has_stood_still_for_long_and_raises_a_hand_is_somebody(cast, legs):
+    scan = cast(legs(2.0, 0.3))
+    background = still_background(scan, (2.0, 0.3))
+    arguments = (CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+    found = measure_people(hands_toward((2.0, 0.0)), *arguments, background=background)
+    assert positions(found) == pytest.approx(np.array([[2.0, 0.3]]), abs=0.06)
+    after = measure_people(Hands.none(), *arguments, background=background)
+    assert positions(after) == pytest.approx(np.array([[2.0, 0.3]]), abs=0.06)
+
+
+def test_a_person_owns_a_hand_rather_than_the_furniture_beside(cast, legs):
+    scan = cast([(2.0, -0.3, 0.07), (2.0, 0.45, 0.07)])
+    background = still_background(scan, (2.0, -0.3))
+    found = measure_people(
+        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config(),
+        background=background,
+    )  # fmt: skip
+    assert positions(found)[0] == pytest.approx([2.0, 0.45], abs=0.08)
+
+
+def test_somebody_far_behind_does_not_own_a_hand_that_is_near(cast, legs):
+    scan = cast(legs(5.5, 0.3))
+    found = measure_people(
+        hands_toward((1.5, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
+    )
+    assert np.isnan(found.values[0, 1])
+
+
+def test_a_palm_that_tilts_away_is_as_near_as_it_is_broad(cast, legs):
+    scan = cast(legs(1.5, 0.25) + legs(3.4, 0.25))
+    hands = hands_toward((1.5, 0.0))
+    landmarks = hands.landmarks_px.copy()
+    landmarks[0, 9] = landmarks[0, 0] - [0.0, 460.0 * 0.04 / 1.5]
+    landmarks[0, 5] = landmarks[0, 9] + [460.0 * 0.0323 / 1.5, 0.0]
+    landmarks[0, 17] = landmarks[0, 9] - [460.0 * 0.0323 / 1.5, 0.0]
+    tilted = replace(hands, landmarks_px=landmarks)
+    found = measure_people(tilted, CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+    assert positions(found)[0] == pytest.approx([1.5, 0.25], abs=0.08)

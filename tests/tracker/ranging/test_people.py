@@ -55,3 +55,11 @@ def test_single_lost_beams_do_not_part_a_leg(cast):
 def test_a_scan_of_nothing_but_infinity_holds_nobody(cast):
     scan = cast([], wall_m=np.inf)
     assert len(find_people(scan, np.zeros(3), **LIMITS)) == 0
+
+
+def test_a_wall_that_runs_out_of_range_is_not_cut_down_to_a_person(cast):
+    angles = np.arange(720) * np.pi / 360
+    wall = np.where(np.cos(angles) > 0.01, 7.99 / np.maximum(np.cos(angles), 0.01), 12.5)
+    empty = cast([])
+    scan = type(empty)(0, "laser", 0.0, empty.angle_increment_rad, 0.05, 12.0, wall)
+    assert len(find_people(scan, np.zeros(3), **LIMITS)) == 0

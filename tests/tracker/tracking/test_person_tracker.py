@@ -79,6 +79,43 @@ def test_a_customer_who_does_not_call_is_forgotten_after_forget_after_s():
     assert len(run(tracker, [seen_at((2, 1))] * 40, start=5)) == 0
 
 
+def test_a_customer_out_of_sight_does_not_take_over_a_bystander():
+    tracker = PersonTracker()
+    run(tracker, [raised_at((2, 0))] * 5)
+    run(tracker, [seen_at((2, 0), (2.5, 0.6))] * 10, start=5)
+    tracks = run(tracker, [seen_at((2.4 - 0.02 * step, 0.5)) for step in range(15)], start=15)
+    assert tracks.id.tolist() == [1]
+    assert tracks.unseen_s[0] == pytest.approx(1.5)
+
+
+def test_a_bystander_s_raised_hand_is_not_the_neighbor_s_who_went_out_of_sight():
+    tracker = PersonTracker()
+    run(tracker, [raised_at((2, 0))] * 5)
+    run(tracker, [seen_at((2, 0), (2, 0.7))] * 10, start=5)
+    run(tracker, [seen_at((2, 0.7))] * 15, start=15)
+    tracks = run(tracker, [raised_at((2, 0.7))] * 3, start=30)
+    assert tracks.id.tolist() == [1, 2]
+    assert tracks.raised.tolist() == [False, True]
+    assert tracks.mean[1, :2] == pytest.approx([2, 0.7], abs=0.1)
+
+
+def test_customers_come_in_the_order_of_their_identities_whoever_was_seen_first():
+    tracker = PersonTracker()
+    run(tracker, [seen_at((2, 1))] * 10)
+    run(tracker, [raised_at((4, -1))] * 3, start=10)
+    tracks = run(tracker, [raised_at((4, -1), (2, 1))] * 3, start=13)
+    assert tracks.id.tolist() == [1, 2]
+    assert tracks.mean[:, 0] == pytest.approx([4, 2], abs=0.1)
+
+
+def test_only_customers_count_as_tracks():
+    tracker = PersonTracker()
+    run(tracker, [seen_at((2, 1))] * 10)
+    assert not tracker.has_tracks
+    run(tracker, [raised_at((2, 1))], start=10)
+    assert tracker.has_tracks
+
+
 def test_two_people_are_two_customers_with_streaks_of_their_own():
     tracker = PersonTracker()
     run(tracker, [raised_at((2, 1), (2, -1))] * 5)

@@ -13,6 +13,18 @@ def test_outside_the_field_of_view_or_too_far_nobody_is_seen():
     assert visibility(xy, AHEAD).tolist() == [1.0, 0.0, 0.0, 0.0]
 
 
+def test_whoever_stands_on_the_edge_is_half_in_view():
+    edge = np.deg2rad(35)
+    xy = 3.0 * np.array([[np.cos(edge), np.sin(edge)], [np.cos(edge), -np.sin(edge)]])
+    assert visibility(xy, AHEAD) == pytest.approx([0.5, 0.5])
+
+
+def test_a_view_may_reach_farther_to_one_side():
+    view = View.between([1.0, 0.0, np.pi / 2], np.deg2rad(-10), np.deg2rad(80))
+    left_behind, right_behind = [-2.0, 1.5], [4.0, 1.5]
+    assert visibility(np.array([left_behind, right_behind]), view).tolist() == [1.0, 0.0]
+
+
 def test_the_field_of_view_turns_with_the_sensor_across_pi():
     xy = np.array([[-3.0, 0.1], [-3.0, -0.1]])
     view = View(np.array([0.0, 0.0, np.pi]), np.deg2rad(40))
@@ -52,3 +64,24 @@ def test_who_is_out_of_view_for_long_is_forgotten_nevertheless():
     behind = View(np.array([0.0, 0.0, np.pi]), np.deg2rad(70))
     assert len(tracker.step(10 * 10**9, Measurements.none(), view=behind)) == 1
     assert len(tracker.step(11 * 10**9, Measurements.none(), view=behind)) == 0
+
+
+ALL_AROUND = View(np.zeros(3), 2 * np.pi)
+
+
+@pytest.mark.parametrize(
+    ("scan_view", "remaining"), [(ALL_AROUND, 0), (None, 1)], ids=["scan", "no scan"]
+)
+def test_who_is_out_of_the_camera_s_view_fades_only_where_a_scan_would_show_them(
+    scan_view, remaining
+):
+    tracker = PersonTracker(Config(delete_after_s=2.0))
+    claims = Measurements.cartesian([[3.0, 0.0]], 0.01 * np.eye(2))
+    for number in range(5):
+        tracker.step(number * 10**8, claims)
+    behind = View(np.array([0.0, 0.0, np.pi]), np.deg2rad(70))
+    for number in range(5, 60):
+        tracks = tracker.step(
+            number * 10**8, Measurements.none(), view=behind, scan_view=scan_view
+        )
+    assert len(tracks) == remaining

@@ -1,0 +1,115 @@
+import numpy as np
+import pytest
+
+from tracker.ranging import Background, find_people
+
+LASER = np.zeros(3)
+PERIOD_NS = 100_000_000
+AFTER_S = 2.0
+CHAIR = (2.0, 0.5)
+
+
+@pytest.fixture
+def watch(cast):
+    """Return a function that shows scans of circles to a background, and gives the next stamp."""
+
+    def show(background, circles, scans, start=0):
+        for number in range(start, start + scans):
+            scan = cast(circles)
+            scan = type(scan)(
+                number * PERIOD_NS,
+                "laser",
+                0.0,
+                scan.angle_increment_rad,
+                0.05,
+                12.0,
+                scan.ranges_m,
+            )
+            people = find_people(
+                scan, LASER, segment_jump_m=0.15, body_width_m=0.8, range_max_m=8.0
+            )
+            background.observe(scan, LASER, people.xy_m, AFTER_S)
+        return start + scans
+
+    return show
+
+
+def holds(background, *points):
+    return background.holds(np.array(points, float).reshape(-1, 2)).tolist()
+
+
+def test_what_stands_still_for_long_is_background(watch):
+    background = Background()
+    number = watch(background, [(*CHAIR, 0.07)], 20)
+    assert holds(background, CHAIR) == [False]
+    watch(background, [(*CHAIR, 0.07)], 2, number)
+    assert holds(background, CHAIR, (3.0, 0.0)) == [True, False]
+
+
+def test_who_moves_is_not(watch):
+    background = Background()
+    for number in range(60):
+        place = (2.0, -1.5 + 0.05 * number)
+        watch(background, [(*place, 0.07)], 1, number)
+        assert holds(background, place) == [False]
+
+
+def test_a_place_is_free_again_once_the_scan_has_looked_through_it(watch):
+    background = Background()
+    number = watch(background, [(*CHAIR, 0.07)], 30)
+    number = watch(background, [], 4, number)
+    assert holds(background, CHAIR) == [True]  # four scans may be drop-outs
+    watch(background, [], 1, number)
+    assert holds(background, CHAIR) == [False]
+
+
+def test_what_is_hidden_stays_background(watch):
+    background = Background()
+    number = watch(background, [(*CHAIR, 0.07)], 30)
+    watch(background, [(1.0, 0.25, 0.2)], 50, number)
+    assert holds(background, CHAIR) == [True]
+
+
+def test_a_customer_who_stands_still_never_becomes_background(watch):
+    background = Background()
+    for number in range(60):
+        watch(background, [(*CHAIR, 0.07)], 1, number)
+        background.spare(np.array([[2.1, 0.6]]), 0.45)
+    assert holds(background, CHAIR) == [False]
+
+
+def test_a_customer_beside_furniture_does_not_make_it_a_person_again(watch):
+    background = Background()
+    number = watch(background, [(*CHAIR, 0.07)], 30)
+    background.spare(np.array([[2.1, 0.6]]), 0.45)
+    watch(background, [(*CHAIR, 0.07)], 1, number)
+    assert holds(background, CHAIR) == [True]
+
+
+def test_a_raised_hand_frees_its_owner_s_place(watch):
+    background = Background()
+    watch(background, [(*CHAIR, 0.07)], 30)
+    background.free(np.array([CHAIR]))
+    assert holds(background, CHAIR) == [False]
+
+
+def test_time_in_which_no_scan_came_does_not_count(watch):
+    background = Background()
+    watch(background, [(*CHAIR, 0.07)], 1)
+    watch(background, [(*CHAIR, 0.07)], 1, 10_000)
+    assert holds(background, CHAIR) == [False]
+
+
+def test_after_reset_nothing_is_background(watch):
+    background = Background()
+    watch(background, [(*CHAIR, 0.07)], 30)
+    background.reset()
+    assert holds(background, CHAIR) == [False]
+
+
+def test_memory_is_bounded(cast):
+    background = Background()
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        background.observe(cast([]), LASER, rng.uniform(-7.0, 7.0, (200, 2)), AFTER_S)
+    assert len(background._places) <= 512
