@@ -139,13 +139,14 @@ class PersonTracker:
             hand=hand,
             id=self._ids(people, is_called),
         )
-        seen_xy = belief.merged()[0][is_seen, :2]
-        people = merge_twins(people, is_seen, self._config)
+        known = len(people)
+        place = belief.merged()[0][:, :2]
         if np.count_nonzero(is_called) < len(raised):
-            called_xy = belief.merged()[0][is_called, :2]
-            people = people.append(self._newcomers(raised, called_by, called_xy, stamp_ns))
+            people = people.append(self._newcomers(raised, called_by, place[is_called], stamp_ns))
         if np.count_nonzero(is_shown) < len(others):
-            people = people.append(self._bystanders(others, shown_by, seen_xy, stamp_ns))
+            people = people.append(self._bystanders(others, shown_by, place[is_seen], stamp_ns))
+        is_seen = np.append(is_seen, np.ones(len(people) - known, dtype=bool))
+        people = merge_twins(people, is_seen, self._config)
         keep = still_there(people, stamp_ns, self._config)
         if not keep.all():
             people = people[keep]

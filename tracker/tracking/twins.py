@@ -8,7 +8,7 @@ from tracker.config import Config
 from tracker.containers import BoolArray
 from tracker.tracking.people import People
 
-#: A track that has been silent for so long, beside somebody who is seen, is that somebody.
+#: A track that has been silent for so long, beside a customer who is seen, is that customer.
 _SILENT_S = 0.5
 
 
@@ -16,21 +16,26 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
     """Join each silent customer with the seen track closer than `same_person_distance_m`, if any.
 
     The older identity goes on, with what the seen track knows of place, hand and time. A bystander
-    who was there while the customer was still seen is somebody else.
+    who was there while the customer was still seen is somebody else; one who has appeared since is
+    the customer, who set off faster than expected.
 
     Args:
         people: Everybody.
         is_seen: Shape (N,): any measurement was assigned in this frame.
         config: `same_person_distance_m`.
     """
-    silent = np.flatnonzero((people.missing_s > _SILENT_S) & people.is_customer)
+    silent = np.flatnonzero(~is_seen & people.is_customer)
     seen = np.flatnonzero(is_seen)
     if len(silent) == 0 or len(seen) == 0:
         return people
     mean, _ = people.belief.merged()
     apart = mean[silent, None, :2] - mean[seen, :2]
     distance = np.hypot(apart[..., 0], apart[..., 1])
-    is_other = ~people.is_customer[seen] & (people.born_ns[seen] <= people.seen_ns[silent, None])
+    is_other = np.where(
+        people.is_customer[seen],
+        people.missing_s[silent, None] <= _SILENT_S,
+        people.born_ns[seen] <= people.seen_ns[silent, None],
+    )
     distance[is_other] = np.inf
     nearest = distance.argmin(axis=1)
     close = distance[np.arange(len(silent)), nearest] < config.same_person_distance_m

@@ -99,6 +99,15 @@ def test_a_bystander_s_raised_hand_is_not_the_neighbor_s_who_went_out_of_sight()
     assert tracks.mean[1, :2] == pytest.approx([2, 0.7], abs=0.1)
 
 
+def test_a_customer_who_has_long_stood_and_suddenly_walks_off_is_still_the_same():
+    tracker = PersonTracker()
+    run(tracker, [raised_at((2, 0))] * 5)
+    run(tracker, [seen_at((2, 0))] * 100, start=5)
+    tracks = run(tracker, [seen_at((2, 0.12 * step)) for step in range(1, 21)], start=105)
+    assert tracks.id.tolist() == [1]
+    assert tracks.mean[0, :2] == pytest.approx([2, 2.4], abs=0.1)
+
+
 def test_customers_come_in_the_order_of_their_identities_whoever_was_seen_first():
     tracker = PersonTracker()
     run(tracker, [seen_at((2, 1))] * 10)
