@@ -228,3 +228,61 @@ def test_algorithm_4_gives_the_specification_s_pose_of_a_pixel(convention, side)
     expected = Rotation.from_euler("z", yaw)
     turned = expected.inv() * Rotation.from_quat(pose.quaternion_xyzw)
     assert turned.magnitude() == pytest.approx(0.0, abs=1e-4)
+
+
+def circles_scan(stamp_ns, *centers, radius=0.07):
+    """As `person_scan`, with several thin things."""
+    scans = [person_scan(stamp_ns, x, y, radius).ranges_m for x, y in centers]
+    one = person_scan(stamp_ns)
+    return Scan(stamp_ns, "laser", 0.0, one.angle_increment_rad, 0.05, 12.0, np.min(scans, axis=0))
+
+
+def test_the_camera_s_field_of_view_decides_who_is_missed_without_a_scan(located):
+    play(located, 6)
+    located.detector.wrists_px = ()
+    assert len(play(located, 20, START_NS + 6 * PERIOD_NS, scan=None)[-1].tracks) == 1
+    in_view = play(located, 30, START_NS + 26 * PERIOD_NS, scan=None)[-1]
+    assert len(in_view.tracks) == 0
+
+
+def test_who_is_behind_the_camera_stays_without_a_scan(located):
+    play(located, 6)
+    located.detector.wrists_px = ()
+    turned = RigidTransform((0, 0, 0), euler_to_quaternion(0, 0, np.pi))
+    located.add_transform(static("map", "camera_link", turned))
+    assert len(play(located, 100, START_NS + 6 * PERIOD_NS, scan=None)[-1].tracks) == 1
+
+
+def test_furniture_is_learnt_and_forgotten_on_reset():
+    config = Config(background_after_s=2.0)
+    pipeline = Pipeline(config, SeenHands())
+    pipeline.add_transform(static("map", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+    room = lambda stamp: circles_scan(stamp, (2.0, 1.0))  # noqa: E731
+    results = play(pipeline, 30, scan=room)
+    assert [len(result.measurements) for result in (results[0], results[-1])] == [1, 0]
+    pipeline.reset()
+    pipeline.add_transform(static("map", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+    assert len(play(pipeline, 1, START_NS + 30 * PERIOD_NS, scan=room)[-1].measurements) == 1
+
+
+def test_furniture_is_not_learnt_where_that_is_switched_off():
+    pipeline = Pipeline(Config(background_after_s=0.0), SeenHands())
+    pipeline.add_transform(static("map", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+    room = lambda stamp: circles_scan(stamp, (2.0, 1.0))  # noqa: E731
+    assert len(play(pipeline, 400, scan=room)[-1].measurements) == 1
+
+
+def test_a_customer_who_stands_still_with_the_hand_down_is_no_furniture():
+    pipeline = Pipeline(Config(background_after_s=2.0), SeenHands((320, 100)))
+    pipeline.add_transform(static("map", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+    stand = lambda stamp: circles_scan(stamp, (2.0, 0.1))  # noqa: E731
+    play(pipeline, 5, scan=stand)
+    pipeline.detector.wrists_px = ()
+    last = play(pipeline, 60, START_NS + 5 * PERIOD_NS, scan=stand)[-1]
+    assert len(last.tracks) == 1
+    assert len(last.measurements) == 1
+    assert last.tracks.unseen_s[0] == 0.0

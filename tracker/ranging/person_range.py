@@ -23,6 +23,8 @@ _BESIDE_M, _BESIDE_STD_M = 0.3, 0.2
 _RANGE_SPREAD = 0.2
 #: ... and noise of a landmark, which tells on small palms.
 _LANDMARK_STD_PX = 1.0
+#: A palm shorter than this tells no range; some detectors leave landmarks out.
+_PALM_MIN_PX = 3.0
 #: From the index finger's root to the little finger's, in palm lengths (anthropometric tables).
 _PALM_BREADTH = 0.68
 #: 99 of 100 owners fit better (chi-square of two numbers); beyond, the scan does not show them.
@@ -61,8 +63,10 @@ def owners(
     beside = (along > 0.0) & (np.abs(across) <= arm_reach_m)
     offset, range_m = _owner_offset(hands), _range_from_size(hands, camera)
     misfit = ((across - offset[:, None]) / _BESIDE_STD_M) ** 2
-    spread = np.hypot(_RANGE_SPREAD, _LANDMARK_STD_PX / _palm_px(hands))
-    misfit += (np.log(np.maximum(along, 0.05) / range_m[:, None]) / spread[:, None]) ** 2
+    palm_px = _palm_px(hands)[:, None]
+    spread = np.hypot(_RANGE_SPREAD, _LANDMARK_STD_PX / palm_px)
+    of_size = (np.log(np.maximum(along, 0.05) / range_m[:, None]) / spread) ** 2
+    misfit += np.where(palm_px >= _PALM_MIN_PX, of_size, 0.0)
     beside &= misfit <= _MISFIT_MAX
     misfit += _BACKGROUND_MISFIT * is_background
     best = np.argmin(np.where(beside, misfit, np.inf), axis=1)
