@@ -139,14 +139,14 @@ class PersonTracker:
             hand=hand,
             id=self._ids(people, is_called),
         )
-        known = len(people)
         place = belief.merged()[0][:, :2]
+        if np.count_nonzero(is_shown) < len(others):
+            bystanders = self._bystanders(others, shown_by, place[is_seen], stamp_ns)
+            people = people.append(bystanders)
+            is_seen = np.append(is_seen, np.ones(len(bystanders), dtype=bool))
+        people = merge_twins(people, is_seen, self._config)
         if np.count_nonzero(is_called) < len(raised):
             people = people.append(self._newcomers(raised, called_by, place[is_called], stamp_ns))
-        if np.count_nonzero(is_shown) < len(others):
-            people = people.append(self._bystanders(others, shown_by, place[is_seen], stamp_ns))
-        is_seen = np.append(is_seen, np.ones(len(people) - known, dtype=bool))
-        people = merge_twins(people, is_seen, self._config)
         keep = still_there(people, stamp_ns, self._config)
         if not keep.all():
             people = people[keep]
