@@ -51,7 +51,10 @@ def test_it_follows_people_as_the_tracker_itself_does():
             bearing = trials.bearing_rad[frame, :, trial]
             range_m = trials.range_m[frame, :, trial]
             there = np.isfinite(bearing)
-            measured = Measurements.polar(bearing[there], range_m[there], *NOISE, raised=False)
+            measured = Measurements.polar(
+                bearing[there], range_m[there], *NOISE,
+                raised=False, hand=np.flatnonzero(there),  # lowered hands: they begin no track
+            )  # fmt: skip
             tracks = one.step((frame + 1) * 100_000_000, measured)
             many.step(0.1, bearing[:, None], range_m[:, None])
             assert len(tracks) == CROWDED.people

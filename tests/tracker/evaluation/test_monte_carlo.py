@@ -8,7 +8,7 @@ import pytest
 
 from tracker.errors import ConfigError, SceneError
 from tracker.evaluation.monte_carlo import monte_carlo, run_unit
-from tracker.evaluation.scenario import SCENARIOS, FilterScenario, default_config
+from tracker.evaluation.scenario import SCENARIOS, default_config
 from tracker.evaluation.study import study_as_dict
 
 SHORT = dataclasses.replace(SCENARIOS["people"], duration_s=3.0)
