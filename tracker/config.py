@@ -257,6 +257,11 @@ class Config(BaseModel):
         0.9, "Chance that a raised hand, or a person in the scan, is detected in a frame.",
         group="tracking", live=True, ge=0.05, le=0.99,
     )  # fmt: skip
+    appearance_weight: float = _parameter(
+        1.0, "What likeness of the clothes counts when a measurement is assigned: 1 as much as it "
+        "was measured to be worth, 0 nothing.",
+        group="tracking", live=True, ge=0.0, le=10.0,
+    )  # fmt: skip
     newcomer_density: float = _parameter(
         0.02, "Measurements of nobody known, false ones and new customers', per frame and area.",
         unit="1/m^2", group="tracking", live=True, gt=0.0, le=10.0,

@@ -193,6 +193,8 @@ class Measurements:
             (the same scan segment); -1 where nobody knows.
         hand: Shape (M,), int64: row of the image's `Hands`, or -1.
         sensor_pose_covariance: Shape (M, 3, 3), of `sensor_pose`; None means zeros (well known).
+        appearance: Shape (M, D): histograms of what the person looks like (the clothes), each
+            adding up to 1; rows of NaN or zeros are unknown. None where nobody looked.
     """
 
     values: FloatArray
@@ -203,6 +205,7 @@ class Measurements:
     person: IntArray
     hand: IntArray
     sensor_pose_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
+    appearance: FloatArray | None = None
 
     def __post_init__(self) -> None:
         if self.sensor_pose_covariance is None:
@@ -214,6 +217,9 @@ class Measurements:
             _freeze(self, name, getattr(self, name), np.int64)
         _freeze(self, "raised", self.raised, np.bool_)
         tails = {"values": (2,), "covariance": (2, 2), "sensor_pose": (3,)}
+        if self.appearance is not None:
+            _freeze(self, "appearance", self.appearance, np.float64)
+            tails["appearance"] = self.appearance.shape[1:2] or (0,)  # of any length
         _check_rows(self, len(self.values), **tails, sensor_pose_covariance=(3, 3))
 
     def __len__(self) -> int:
@@ -238,6 +244,7 @@ class Measurements:
         raised: ArrayLike = True,
         person: ArrayLike = -1,
         hand: ArrayLike = -1,
+        appearance: ArrayLike | None = None,
     ) -> Measurements:
         """Bearings and ranges seen from a sensor.
 
@@ -250,6 +257,7 @@ class Measurements:
             raised: Shape (M,) or one truth value.
             person: Shape (M,) or one number; see the class.
             hand: Shape (M,) or one number; see the class.
+            appearance: Shape (M, D), or None; see the class.
 
         Raises:
             ShapeError: The arrays disagree in length.
@@ -271,6 +279,7 @@ class Measurements:
             raised=_column("raised", raised, count).astype(bool),
             person=_column("person", person, count).astype(np.int64),
             hand=_column("hand", hand, count).astype(np.int64),
+            appearance=None if appearance is None else np.asarray(appearance, np.float64),
         )
 
     @staticmethod
@@ -281,6 +290,7 @@ class Measurements:
         raised: ArrayLike = True,
         person: ArrayLike = -1,
         hand: ArrayLike = -1,
+        appearance: ArrayLike | None = None,
     ) -> Measurements:
         """Positions in the fixed frame.
 
@@ -290,6 +300,7 @@ class Measurements:
             raised: Shape (M,) or one truth value.
             person: Shape (M,) or one number; see the class.
             hand: Shape (M,) or one number; see the class.
+            appearance: Shape (M, D), or None; see the class.
 
         Raises:
             ShapeError: The arrays disagree in length.
@@ -305,17 +316,22 @@ class Measurements:
             raised=_column("raised", raised, count).astype(bool),
             person=_column("person", person, count).astype(np.int64),
             hand=_column("hand", hand, count).astype(np.int64),
+            appearance=None if appearance is None else np.asarray(appearance, np.float64),
         )
 
     @staticmethod
     def concatenate(*parts: Measurements) -> Measurements:
-        """Join batches of one instant, rows in the order given."""
-        return Measurements(
-            **{
-                item.name: np.concatenate([getattr(part, item.name) for part in parts])
-                for item in fields(Measurements)
-            }
-        )
+        """Join batches of one instant, rows in the order given.
+
+        Raises:
+            ShapeError: Their histograms of appearance differ in length.
+        """
+        joined = {
+            item.name: np.concatenate([getattr(part, item.name) for part in parts])
+            for item in fields(Measurements)
+            if item.name != "appearance"
+        }
+        return Measurements(**joined, appearance=_joined_appearance(parts))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -504,6 +520,24 @@ def _check_rows(batch: Any, count: int, **tails: tuple[int, ...]) -> None:
         if array.shape != (count, *tails.get(name, ())):
             shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
             raise ShapeError(f"{type(batch).__name__} disagree in shape: {shapes}.")
+
+
+def _joined_appearance(parts: tuple[Measurements, ...]) -> FloatArray | None:
+    """Rows of NaN for parts without appearance."""
+    lengths = {part.appearance.shape[1] for part in parts if part.appearance is not None}
+    if not lengths:
+        return None
+    if len(lengths) > 1:
+        raise ShapeError(
+            f"Histograms of appearance have {sorted(lengths)} numbers; joined, all need as many."
+        )
+    unknown = np.full((1, *lengths), np.nan)
+    return np.concatenate(
+        [
+            unknown.repeat(len(part), axis=0) if part.appearance is None else part.appearance
+            for part in parts
+        ]
+    )
 
 
 def _select(batch: _Batch, rows: Any) -> _Batch:

@@ -10,10 +10,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, FrameResult, Scan
+from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Measurements, Scan
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform
 from tracker.perception.detector import HandDetector
@@ -137,6 +140,8 @@ class Pipeline:
             background=self._background if self.config.background_after_s > 0.0 else None,
         )
         self._sustained_by = scan
+        if self.config.appearance_weight and hands.raised.any():
+            measurements = _with_clothes(measurements, image, hands)
         robot_xy_m = fixed_from_camera.planar[:2]
         tracks = self.tracker.step(
             image.stamp_ns,
@@ -291,6 +296,15 @@ class Pipeline:
             return fixed_from_camera
         laser_from_camera = body_pose(mounting, frame, self.config.camera_axes)
         return fixed_from_camera @ laser_from_camera.inverse()
+
+
+def _with_clothes(measurements: Measurements, image: CameraImage, hands: Hands) -> Measurements:
+    """The same measurements, those of raised hands with the colors of their owners' clothes."""
+    from tracker.perception.clothes import BINS, clothes_histograms  # brings OpenCV along
+
+    of_hands = np.full((len(hands) + 1, BINS), np.nan)  # the last row for who has no hand
+    of_hands[:-1][hands.raised] = clothes_histograms(image.bgr, hands[hands.raised])
+    return replace(measurements, appearance=of_hands[measurements.hand])
 
 
 def _configured_camera(config: Config) -> CameraModel:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray, Tracks
+from tracker.tracking.appearance import Appearance
 from tracker.tracking.modes import Belief
 from tracker.tracking.streaks import Streaks
 
@@ -30,6 +31,7 @@ class People:
         called_ns: Shape (N,): stamp of the last raised-hand measurement.
         missing_s: Shape (N,): time in which nothing showed them although they were in view.
         hand: Shape (N,): row of this frame's `Hands`, or -1.
+        appearance: What they wear.
     """
 
     id: IntArray
@@ -45,6 +47,7 @@ class People:
     called_ns: IntArray
     missing_s: FloatArray
     hand: IntArray
+    appearance: Appearance
 
     def __len__(self) -> int:
         return len(self.id)
@@ -71,6 +74,7 @@ class People:
         stamp_ns: int,
         window: int,
         existence: FloatArray,
+        appearance: Appearance,
     ) -> People:
         """People who have just been seen for the first time; nothing is counted yet."""
         count = len(ids)
@@ -89,13 +93,15 @@ class People:
             called_ns=now,
             missing_s=np.zeros(count),
             hand=np.full(count, -1, dtype=np.int64),
+            appearance=appearance,
         )
 
     @staticmethod
     def nobody(window: int, modes: int) -> People:
         """No track at all."""
         belief = Belief.begin(np.zeros((0, 4)), np.zeros((0, 4, 4)), modes, 0.0)
-        return People.begin(np.zeros(0, dtype=np.int64), belief, 0, window, np.zeros(0))
+        ids, nothing = np.zeros(0, dtype=np.int64), Appearance.unknown(0)
+        return People.begin(ids, belief, 0, window, np.zeros(0), nothing)
 
     def append(self, other: People) -> People:
         """Rows of both, in order."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, IntArray, Measurements, Tracks, check_stamp
 from tracker.tracking.admission import is_close, once_per_person, usable, with_hand_bias
+from tracker.tracking.appearance import Appearance, recognizable
 from tracker.tracking.association import assign, log_odds
 from tracker.tracking.converted import convert
 from tracker.tracking.filter import initial_state
@@ -119,9 +122,11 @@ class PersonTracker:
         people, in_camera, in_view = self._predict(dt_s, view, scan_view)
         hand_chance = np.where(people.streaks.missed == 0, 1.0, _RAISES_AGAIN)
         belief, existence, called_by = self._update(
-            people.belief, people.existence, raised, in_camera * hand_chance
+            people.belief, people.existence, people.appearance, raised, in_camera * hand_chance
         )
-        belief, existence, shown_by = self._update(belief, existence, others, in_view)
+        belief, existence, shown_by = self._update(
+            belief, existence, people.appearance, others, in_view
+        )
         is_called, is_shown = called_by >= 0, shown_by >= 0
         is_seen = is_called | is_shown
         hand = np.full(len(people), -1, dtype=np.int64)
@@ -138,6 +143,9 @@ class PersonTracker:
             existence=existence,
             hand=hand,
             id=self._ids(people, is_called),
+            appearance=people.appearance.remember(raised.appearance, called_by).remember(
+                others.appearance, shown_by
+            ),
         )
         place = belief.merged()[0][:, :2]
         if np.count_nonzero(is_shown) < len(others):
@@ -164,6 +172,11 @@ class PersonTracker:
         sane = usable(measurements)
         if not sane.all():
             measurements = measurements[sane]
+        if measurements.appearance is not None:
+            looks = (
+                recognizable(measurements.appearance) if self._config.appearance_weight else None
+            )
+            measurements = replace(measurements, appearance=looks)
         if self._config.measurement_model == "converted":
             measurements = convert(measurements)
         raised, others = measurements, _NOTHING
@@ -188,7 +201,12 @@ class PersonTracker:
         return fade(people, belief, dt_s, in_view, self._config), in_camera, in_view
 
     def _update(
-        self, belief: Belief, existence: FloatArray, claims: Measurements, visible: FloatArray
+        self,
+        belief: Belief,
+        existence: FloatArray,
+        appearance: Appearance,
+        claims: Measurements,
+        visible: FloatArray,
     ) -> tuple[Belief, FloatArray, IntArray]:
         """Associate and correct; also says which measurement each track got, or -1."""
         got = np.full(len(existence), -1, dtype=np.int64)
@@ -197,6 +215,9 @@ class PersonTracker:
         pairs = find_pairs(belief, claims, self._config)
         chance = np.maximum(visible * self._config.detection_probability, _DETECTION_MIN)
         odds = log_odds(pairs, belief.weight, chance)
+        if claims.appearance is not None:
+            clothes = appearance.log_ratio(claims.appearance, pairs.track, pairs.claim)
+            odds += self._config.appearance_weight * clothes
         chosen = assign(pairs, odds, len(existence))
         rows = np.flatnonzero(chosen >= 0)
         hits = chosen[rows]
@@ -260,7 +281,9 @@ class PersonTracker:
         )
         count = int(np.count_nonzero(new))
         ids, existence = np.zeros(count, dtype=np.int64), np.full(count, BIRTH_EXISTENCE)
-        people = People.begin(ids, belief, stamp_ns, config.confirm_window, existence)
+        looks = None if left.appearance is None else left.appearance[new]
+        appearance = Appearance.unknown(count).remember(looks, np.arange(count))
+        people = People.begin(ids, belief, stamp_ns, config.confirm_window, existence, appearance)
         return people, left[new]
 
 

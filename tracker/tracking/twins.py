@@ -17,12 +17,13 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
 
     The older identity goes on, with what the seen track knows of place, hand and time. A bystander
     who was there while the customer was still seen is somebody else; one who has appeared since is
-    the customer, who set off faster than expected.
+    the customer, who set off faster than expected. People whose clothes
+    rather speak for two are no twins.
 
     Args:
         people: Everybody.
         is_seen: Shape (N,): any measurement was assigned in this frame.
-        config: `same_person_distance_m`.
+        config: `same_person_distance_m`, `appearance_weight`.
     """
     silent = np.flatnonzero(~is_seen & people.is_customer)
     seen = np.flatnonzero(is_seen)
@@ -39,6 +40,9 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
     distance[is_other] = np.inf
     nearest = distance.argmin(axis=1)
     close = distance[np.arange(len(silent)), nearest] < config.same_person_distance_m
+    clothes = people.appearance
+    if config.appearance_weight and close.any():
+        close &= clothes.log_ratio(clothes.histogram, silent, seen[nearest]) >= 0.0
     if not close.any():
         return people
     keep = np.ones(len(people), dtype=bool)
@@ -57,4 +61,5 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
         confirmed=(people.confirmed | people.confirmed[heir])[keep],
         detections=np.maximum(people.detections, people.detections[heir])[keep],
         called_ns=np.maximum(people.called_ns, people.called_ns[heir])[keep],
+        appearance=clothes.remember(clothes.histogram, heir)[keep],
     )
