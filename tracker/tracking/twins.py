@@ -17,8 +17,8 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
 
     The older identity goes on, with what the seen track knows of place, hand and time. A bystander
     who was there while the customer was still seen is somebody else; one who has appeared since is
-    the customer, who set off faster than expected. People whose clothes
-    rather speak for two are no twins.
+    the customer, who set off faster than expected. People whose clothes rather speak for two are
+    no twins.
 
     Args:
         people: Everybody.
