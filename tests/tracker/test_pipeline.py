@@ -287,6 +287,8 @@ def test_a_customer_who_stands_still_with_the_hand_down_is_no_furniture():
     assert len(last.tracks) == 1
     assert len(last.measurements) == 1
     assert last.tracks.unseen_s[0] == 0.0
+
+
 def test_raised_hands_are_measured_with_the_clothes_of_their_owners(located):
     assert play(located, 1)[0].measurements.appearance is not None
     located.detector.wrists_px = ()
