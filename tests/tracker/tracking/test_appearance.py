@@ -114,18 +114,6 @@ def test_somebody_else_s_clothes_make_a_newcomer():
     assert ids == [[1], [1, 2]]
 
 
-def test_a_silent_customer_is_no_twin_of_somebody_in_other_clothes():
-    left = []
-    for clothes in (RED, BLUE):
-        tracker = two_customers(silent_frames=0, blue_at=(2, -1.0))
-        for number in range(10, 20):
-            # The one who was at (2, -1) walks up to the silent one.
-            y = -1.0 + 0.12 * (number - 9)
-            tracks = tracker.step(number * 10**8, raised_at([(2, y)], [clothes]), view=NOBODY)
-        left.append(len(tracks))
-    assert left[1] == 2
-
-
 @given(looks=HISTOGRAMS, more=HISTOGRAMS, data=st.data())
 def test_what_is_remembered_stays_a_histogram(looks, more, data):
     count = 4
