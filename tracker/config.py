@@ -130,6 +130,16 @@ class Config(BaseModel):
         0.15, "`raise_rule: image`: how far thumb and little finger must be apart.",
         unit="image widths", group="perception", live=True, ge=0.0, le=1.0,
     )  # fmt: skip
+    search_regions_per_frame: int = _parameter(
+        2, "Places of the picture (the whole, tiles, windows around people) that are searched for "
+        "new hands in each image.",
+        group="perception", live=True, ge=1, le=64,
+    )  # fmt: skip
+    search_lean_max_deg: float = _parameter(
+        75.0, "`raise_rule: palm`: hands that lean farther to a side are neither read nor "
+        "followed; 180 follows lowered hands as well.",
+        unit="deg", group="perception", live=True, gt=0.0, le=180.0,
+    )  # fmt: skip
     max_hands: int = _parameter(
         8, "Hands followed at a time; the search rests while so many are followed.",
         group="perception", live=True, ge=1, le=64,

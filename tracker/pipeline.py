@@ -19,8 +19,14 @@ from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Measurements, Scan
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform
-from tracker.perception.detector import HandDetector
-from tracker.ranging import Background, body_pose, measure_people
+from tracker.perception.detector import HandDetector, LooksAhead
+from tracker.ranging import (
+    Background,
+    body_pose,
+    expected_hands,
+    measure_people,
+    scan_people,
+)
 from tracker.rate_limiter import RateLimiter
 from tracker.tracking import PersonTracker, View, approach_pose, customer_pose
 from tracker.transforms import StampedTransform, TransformBuffer, Transforms
@@ -126,9 +132,12 @@ class Pipeline:
             self._jump_back(image)
         self._last_stamp_ns = image.stamp_ns
 
-        hands = self.detector.find(image)
         fixed_from_camera, is_located = self._locate_camera(image)
         scan, laser_pose = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
+        if is_located and isinstance(self.detector, LooksAhead):
+            people = self._known_people(scan, laser_pose)
+            self.detector.expect(expected_hands(people, self.camera, fixed_from_camera))
+        hands = self.detector.find(image)
         measurements = measure_people(
             hands,
             self.camera,
@@ -258,6 +267,13 @@ class Pipeline:
         return View.between(
             laser_pose, first_rad - half_beam_rad, last_rad + half_beam_rad, range_max_m
         )
+
+    def _known_people(self, scan: Scan | None, laser_pose: FloatArray | None) -> FloatArray:
+        """Shape (N, 2): customers, then what could be people in the scan, in the fixed frame."""
+        places = [self.tracker.positions_m]
+        if scan is not None and laser_pose is not None:
+            places.append(scan_people(scan, laser_pose, self.config).xy_m)
+        return np.concatenate(places)
 
     def _nearest_scan(
         self, stamp_ns: int, fixed_from_camera: RigidTransform, is_located: bool

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol, runtime_checkable
 
 from tracker.config import Config
-from tracker.containers import CameraImage, Hands
+from tracker.containers import CameraImage, FloatArray, Hands
 
 
 @runtime_checkable
@@ -26,4 +26,17 @@ class HandDetector(Protocol):
 
     def configure(self, config: Config) -> None:
         """Take over changed parameters, from the next image on."""
+        ...
+
+
+@runtime_checkable
+class LooksAhead(Protocol):
+    """A detector that searches the picture piece by piece, and wants to know where to begin."""
+
+    def expect(self, boxes_px: FloatArray) -> None:
+        """Where raised hands are likelier than elsewhere in the next image.
+
+        Args:
+            boxes_px: Shape (E, 4): x_min, y_min, x_max, y_max in pixels of the full image.
+        """
         ...

@@ -1,19 +1,21 @@
 """Which hands of the last image are still there, and which are new?
 
 A hand that was found is looked for around its old place, which spares the search and keeps the
-order of rows; only while fewer hands are followed than allowed is the picture searched for more.
+order of rows. At the same time the picture is searched for more, a few places in each image.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import BoolArray, CameraImage, ImageArray
+from tracker.containers import BoolArray, CameraImage, FloatArray, ImageArray, IntArray
 from tracker.perception.landmarks import Landmarks
+from tracker.perception.movement import Movement
 from tracker.perception.palm_search import Palms, Window
 from tracker.perception.regions import (
     Regions,
@@ -21,6 +23,7 @@ from tracker.perception.regions import (
     regions_from_landmarks,
     regions_from_palms,
 )
+from tracker.perception.search_plan import SearchPlan
 
 #: Regions that overlap more than this hold the same hand; MediaPipe's value.
 SAME_REGION_OVERLAP = 0.5
@@ -29,6 +32,9 @@ SAME_REGION_OVERLAP = 0.5
 #: the landmarks' region, the 89 hands of 56 photos (both complexities) moved by 0.01 in the
 #: median, 0.03 at the ninth decile. How close two clasped hands come is not measured.
 SAME_HAND_DISTANCE = 0.05
+#: A hand this many times smaller than another one that covers its middle is a part of it.
+SMALLER_HAND = 1.4
+_NOWHERE = np.zeros((0, 4))
 
 
 class Searcher(Protocol):
@@ -44,8 +50,10 @@ class Searcher(Protocol):
 class Reader(Protocol):
     """What `following` needs of a `LandmarkReader`."""
 
-    def read(self, bgr: ImageArray, regions: Regions) -> Landmarks:
-        """Landmarks in each region."""
+    def read_beside(
+        self, bgr: ImageArray, regions: Regions, calls: Sequence[Callable[[], Palms]]
+    ) -> tuple[Landmarks, list[Palms]]:
+        """Landmarks in each region, and what the calls returned."""
         ...
 
 
@@ -53,41 +61,93 @@ class HandFollower:
     """Goes from image to image with the hands it knows.
 
     Args:
-        searcher: Finds palms.
+        whole: Finds palms in the whole picture.
+        pieces: Finds palms in windows of it.
         reader: Reads landmarks.
     """
 
-    def __init__(self, searcher: Searcher, reader: Reader) -> None:
-        self._searcher = searcher
+    def __init__(self, whole: Searcher, pieces: Searcher, reader: Reader) -> None:
+        self._whole = whole
+        self._pieces = pieces
         self._reader = reader
+        self._plan: SearchPlan | None = None
+        self._movement = Movement()
         self._regions = Regions.none()
+        self._rows = np.zeros(0, dtype=np.int64)
         self._last: CameraImage | None = None
 
-    def step(self, image: CameraImage, config: Config) -> Landmarks:
+    def step(
+        self, image: CameraImage, config: Config, expected_px: FloatArray = _NOWHERE
+    ) -> tuple[Landmarks, IntArray]:
         """Every hand of the next image; followed ones first, in the order of the last image.
 
         A stamp that jumps back, another frame_id or another size of the image starts anew.
+
+        Args:
+            image: The next image.
+            config: The perception group.
+            expected_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows in which a raised
+                hand is likelier than elsewhere.
+
+        Returns:
+            The hands, and the row of each in the last image's; -1 for those newly found.
         """
         if self._last is None or not _continues(self._last, image):
             self.reset()
         self._last = image
-        regions = self._regions[: config.max_hands]
+        regions, rows = self._regions[: config.max_hands], self._rows[: config.max_hands]
         room = config.max_hands - len(regions)
-        if room > 0:
-            palms = self._searcher.find(
-                image.bgr, config.detection_confidence, shrink=config.downscale_factor
-            )
-            found = _usable(regions_from_palms(palms.boxes_px, palms.keypoints_px))
-            regions = Regions.concatenate(regions, drop_known(found, regions)[:room])
-        hands = self._reader.read(image.bgr, regions)
-        hands = drop_repeated(hands[hands.score >= config.tracking_confidence])
-        self._regions = _usable(regions_from_landmarks(hands.points_px))
-        return hands
+        searches = self._searches(image, regions, expected_px, config) if room > 0 else []
+        hands, palms = self._reader.read_beside(image.bgr, regions, searches)
+        found = _regions_of(palms, config)
+        found = drop_known(found, regions)[:room]
+        if len(found):
+            new_hands, _ = self._reader.read_beside(image.bgr, found, ())
+            hands = Landmarks.concatenate(hands, new_hands)
+            rows = np.concatenate([rows, np.full(len(found), -1)])
+        keep = np.flatnonzero(hands.score >= config.tracking_confidence)
+        keep = keep[first_of_each_hand(hands[keep])]
+        hands, rows = hands[keep], rows[keep]
+        self._follow(hands, config)
+        return hands, rows
 
     def reset(self) -> None:
         """Follow nobody any more."""
         self._regions = Regions.none()
+        self._rows = np.zeros(0, dtype=np.int64)
+        self._movement.reset()
+        self._plan = None
         self._last = None
+
+    def _searches(
+        self, image: CameraImage, known: Regions, expected_px: FloatArray, config: Config
+    ) -> list[Callable[[], Palms]]:
+        """The palm searches of this image, to be called beside each other."""
+        size = (image.width, image.height)
+        moved_px = self._movement.boxes(image.bgr)
+        whole = np.array([0, 0, *size])
+        if self._plan is None:
+            self._plan = SearchPlan(size)
+        windows = self._plan.choose(
+            config.search_regions_per_frame, _without(expected_px, known), moved_px
+        )
+        confidence, shrink = config.detection_confidence, config.downscale_factor
+        return [
+            partial(self._whole.find, image.bgr, confidence, shrink=shrink)
+            if np.array_equal(window, whole)
+            else partial(self._pieces.find, image.bgr, confidence, window=_as_window(window))
+            for window in windows
+        ]
+
+    def _follow(self, hands: Landmarks, config: Config) -> None:
+        """Remember where to look for these hands in the next image.
+
+        Lowered hands are left alone, as the search leaves them: following everybody's hands takes
+        the time in which a raised one would be found.
+        """
+        regions = regions_from_landmarks(hands.points_px)
+        followed = np.flatnonzero(_is_usable(regions) & _is_upward(regions, config))
+        self._regions, self._rows = regions[followed], followed
 
 
 def drop_known(found: Regions, known: Regions) -> Regions:
@@ -97,13 +157,26 @@ def drop_known(found: Regions, known: Regions) -> Regions:
     return found[_first_of_each(overlap(found, found) > SAME_REGION_OVERLAP, range(len(found)))]
 
 
-def drop_repeated(hands: Landmarks) -> Landmarks:
-    """One row per hand where several regions led to the same one; the surest stays."""
+def first_of_each_hand(hands: Landmarks) -> BoolArray:
+    """Mask of one row per hand where several regions led to the same one; the surest stays."""
     side = regions_from_landmarks(hands.points_px).side_px
     apart = hands.points_px[:, None] - hands.points_px[None]
     distance = np.linalg.norm(apart, axis=-1).mean(axis=-1)
     same = distance < SAME_HAND_DISTANCE * np.minimum(side[:, None], side[None, :])
-    return hands[_first_of_each(same, np.argsort(-hands.score, kind="stable").tolist())]
+    same |= _is_inside(hands.points_px, side) | _is_inside(hands.points_px, side).T
+    return _first_of_each(same, np.argsort(-hands.score, kind="stable").tolist())
+
+
+def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:
+    """Shape (H, H): the first hand is much smaller and lies within the second.
+
+    A search made for farther hands can take a few fingers for one; a true hand at that place
+    would be hidden.
+    """
+    low, high = points_px.min(axis=1), points_px.max(axis=1)
+    center = points_px.mean(axis=1)[:, None]
+    within = ((center >= low) & (center <= high)).all(axis=-1)
+    return np.asarray(within & (SMALLER_HAND * side_px[:, None] < side_px))
 
 
 def _first_of_each(same: BoolArray, order: Iterable[int]) -> BoolArray:
@@ -122,6 +195,34 @@ def _continues(last: CameraImage, image: CameraImage) -> bool:
     )
 
 
-def _usable(regions: Regions) -> Regions:
+def _regions_of(found: Sequence[Palms], config: Config) -> Regions:
+    """The regions of palms from several searches, the surest first."""
+    palms = Palms.concatenate(Palms.none(), *found)
+    palms = palms[np.argsort(-palms.score, kind="stable")]
+    regions = regions_from_palms(palms.boxes_px, palms.keypoints_px)
+    return regions[_is_usable(regions) & _is_upward(regions, config)]
+
+
+def _is_upward(regions: Regions, config: Config) -> BoolArray:
+    """Hands that `raise_rule: palm` could call raised, now or in a moment."""
+    if config.raise_rule != "palm":
+        return np.ones(len(regions), dtype=bool)
+    lean_max_rad = np.radians(config.search_lean_max_deg)
+    return np.asarray(np.abs(regions.rotation_rad) <= lean_max_rad)
+
+
+def _is_usable(regions: Regions) -> BoolArray:
     finite = np.isfinite(regions.center_px).all(axis=-1) & np.isfinite(regions.rotation_rad)
-    return regions[finite & (regions.side_px > 1.0) & np.isfinite(regions.side_px)]
+    return np.asarray(finite & (regions.side_px > 1.0) & np.isfinite(regions.side_px))
+
+
+def _without(boxes_px: FloatArray, known: Regions) -> FloatArray:
+    """The boxes in which no known hand lies."""
+    center = known.center_px
+    inside = (center >= boxes_px[:, None, :2]) & (center <= boxes_px[:, None, 2:])
+    return boxes_px[~inside.all(axis=-1).any(axis=-1)]
+
+
+def _as_window(box: IntArray) -> Window:
+    x_min, y_min, x_max, y_max = box.tolist()
+    return x_min, y_min, x_max - x_min, y_max - y_min

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import cv2
 import numpy as np
@@ -17,6 +18,7 @@ from tracker.perception.regions import Regions
 from tracker.perception.sessions import open_session
 
 INPUT_PX = 224
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,9 +41,18 @@ class Landmarks:
     def __getitem__(self, rows: Any) -> Landmarks:
         return Landmarks(self.points_px[rows], self.score[rows], self.right[rows])
 
+    @staticmethod
+    def concatenate(*parts: Landmarks) -> Landmarks:
+        """Join batches, rows in the order given."""
+        return Landmarks(
+            np.concatenate([part.points_px for part in parts]),
+            np.concatenate([part.score for part in parts]),
+            np.concatenate([part.right for part in parts]),
+        )
+
 
 class LandmarkReader:
-    """The landmark model, on one hand with all threads or on several hands side by side.
+    """The landmark model, on one hand with all threads or beside other calls of one thread each.
 
     Args:
         alone: Session for a single hand; may use several threads.
@@ -59,7 +70,7 @@ class LandmarkReader:
     ) -> None:
         self._alone = alone
         self._abreast = abreast
-        self._pool = ThreadPoolExecutor(threads, "hand-landmarks") if threads > 1 else None
+        self._pool = ThreadPoolExecutor(threads, "hand-models") if threads > 1 else None
 
     @staticmethod
     def open(store: ModelStore, complexity: int, *, threads: int) -> LandmarkReader:
@@ -82,19 +93,38 @@ class LandmarkReader:
             bgr: Shape (height, width, 3), the full image.
             regions: In its pixels; what lies outside of the picture repeats its edge.
         """
+        return self.read_beside(bgr, regions, ())[0]
+
+    def read_beside(
+        self, bgr: ImageArray, regions: Regions, calls: Sequence[Callable[[], T]]
+    ) -> tuple[Landmarks, list[T]]:
+        """The same, while other models of one thread each are called.
+
+        Args:
+            bgr: Shape (height, width, 3), the full image.
+            regions: In its pixels.
+            calls: Run first, since more may follow from them.
+
+        Returns:
+            The landmarks, and what the calls returned.
+        """
         to_image = _image_from_input(regions)
-        if self._pool is None or len(regions) < 2:
+        if self._pool is None or len(regions) + len(calls) < 2:
+            returned = [call() for call in calls]
             answers = [_look(self._alone, bgr, matrix) for matrix in to_image]
         else:
+            waiting = [self._pool.submit(call) for call in calls]
             looks = [self._pool.submit(_look, self._abreast, bgr, matrix) for matrix in to_image]
+            returned = [call.result() for call in waiting]
             answers = [look.result() for look in looks]
         points = np.array([answer[0] for answer in answers]).reshape(-1, 21, 2)
         projected = points @ to_image[:, :, :2].transpose(0, 2, 1) + to_image[:, None, :, 2]
-        return Landmarks(
+        hands = Landmarks(
             projected,
             np.array([answer[1] for answer in answers], dtype=np.float64),
             np.array([answer[2] for answer in answers], dtype=np.float64),
         )
+        return hands, returned
 
 
 def _look(

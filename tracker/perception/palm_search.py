@@ -46,6 +46,15 @@ class Palms:
         return Palms(self.boxes_px[rows], self.keypoints_px[rows], self.score[rows])
 
     @staticmethod
+    def concatenate(*parts: Palms) -> Palms:
+        """Join batches, rows in the order given."""
+        return Palms(
+            np.concatenate([part.boxes_px for part in parts]),
+            np.concatenate([part.keypoints_px for part in parts]),
+            np.concatenate([part.score for part in parts]),
+        )
+
+    @staticmethod
     def none() -> Palms:
         """No palm at all."""
         return Palms(np.zeros((0, 4)), np.zeros((0, 7, 2)), np.zeros(0))
@@ -164,13 +173,7 @@ def merge_palms(palms: Palms, same_overlap: float = SAME_PALM_OVERLAP) -> Palms:
             )
         )
         left = left[~with_best]
-    if not merged:
-        return Palms.none()
-    return Palms(
-        np.concatenate([palm.boxes_px for palm in merged]),
-        np.concatenate([palm.keypoints_px for palm in merged]),
-        np.concatenate([palm.score for palm in merged]),
-    )
+    return Palms.concatenate(Palms.none(), *merged)
 
 
 def _clip_window(window: Window | None, width: int, height: int) -> tuple[int, int, int, int]:

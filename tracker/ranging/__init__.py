@@ -2,7 +2,8 @@
 
 from tracker.ranging.background import Background
 from tracker.ranging.beams import beam_index, median_range
-from tracker.ranging.measuring import measure_people
+from tracker.ranging.expected_hands import expected_hands
+from tracker.ranging.measuring import measure_people, scan_people
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.rays import body_pose, hand_rays
 
@@ -11,8 +12,10 @@ __all__ = [
     "PersonClusters",
     "beam_index",
     "body_pose",
+    "expected_hands",
     "find_people",
     "hand_rays",
     "measure_people",
     "median_range",
+    "scan_people",
 ]

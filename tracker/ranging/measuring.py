@@ -53,13 +53,7 @@ def measure_people(
     pair = np.where(pair >= 0, pair + _PAIR_OFFSET, -1)
     people = PersonClusters.none()
     if scan is not None and laser_pose is not None:
-        people = find_people(
-            scan,
-            laser_pose,
-            segment_jump_m=config.segment_jump_m,
-            body_width_m=config.body_width_m,
-            range_max_m=config.person_range_max_m,
-        )
+        people = scan_people(scan, laser_pose, config)
     is_background = np.zeros(len(people), dtype=bool)
     if background is not None and scan is not None and laser_pose is not None:
         if sustain:
@@ -99,6 +93,17 @@ def measure_people(
         people.xy_m[free], rays.origin, config, raised=False, person=free, hand=-1
     )
     return Measurements.concatenate(from_hands, from_scan)
+
+
+def scan_people(scan: Scan, laser_pose: FloatArray, config: Config) -> PersonClusters:
+    """`find_people` by the configured lengths."""
+    return find_people(
+        scan,
+        laser_pose,
+        segment_jump_m=config.segment_jump_m,
+        body_width_m=config.body_width_m,
+        range_max_m=config.person_range_max_m,
+    )
 
 
 def _hand_measurements(

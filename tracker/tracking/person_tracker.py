@@ -78,6 +78,11 @@ class PersonTracker:
         """Whether anybody is tracked now."""
         return bool(self._people.is_customer.any())
 
+    @property
+    def positions_m(self) -> FloatArray:
+        """Shape (N, 2): where everybody was at the last step, in the fixed frame."""
+        return self._people.belief.merged()[0][:, :2]
+
     def reset(self) -> None:
         """Forget everybody; identities go on counting."""
         self._people = self._nobody()

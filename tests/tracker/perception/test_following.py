@@ -3,7 +3,7 @@ import pytest
 
 from tracker.config import Config
 from tracker.containers import CameraImage
-from tracker.perception.following import HandFollower, drop_known, drop_repeated
+from tracker.perception.following import HandFollower, drop_known, first_of_each_hand
 from tracker.perception.landmarks import Landmarks
 from tracker.perception.palm_search import Palms
 from tracker.perception.regions import Regions
@@ -41,13 +41,28 @@ class World:
         boxes = np.concatenate([middle - size / 2, middle + size / 2], axis=-1)
         return Palms(boxes, keypoints, np.full(len(boxes), 0.8))
 
-    def read(self, bgr, regions):
+    def read_beside(self, bgr, regions, calls):
+        return self.read(regions), [call() for call in calls]
+
+    def read(self, regions):
         points, scores = np.zeros((len(regions), 21, 2)), np.zeros(len(regions))
         for row, center in enumerate(regions.center_px):
             near = [one for one in self.centers if np.linalg.norm(one - center) < 0.3 * SIDE_PX]
             points[row] = hand_at(near[0] if near else center)
             scores[row] = self.score if near else 0.1
         return Landmarks(points, scores, np.full(len(regions), 0.5))
+
+
+class Follower(HandFollower):
+    """Answers with the hands alone; the last rows are kept aside."""
+
+    def step(self, *rest):
+        hands, self.rows = super().step(*rest)
+        return hands
+
+
+def follower_of(world):
+    return Follower(world, world, world)
 
 
 def image(stamp_ns=0, frame_id="camera", size=(480, 640)):
@@ -60,21 +75,21 @@ def wrists(hands):
 
 def test_every_hand_of_the_first_image_is_found():
     world = World((100, 100), (300, 100), (500, 300))
-    hands = HandFollower(world, world).step(image(), Config())
+    hands = follower_of(world).step(image(), Config())
     assert wrists(hands) == [[100, 100], [300, 100], [500, 300]]
 
 
 def test_search_rests_while_as_many_hands_are_followed_as_allowed():
     world = World((100, 100), (300, 100))
-    follower, config = HandFollower(world, world), Config(max_hands=2)
+    follower, config = follower_of(world), Config(max_hands=2)
     for stamp in range(5):
         assert len(follower.step(image(stamp), config)) == 2
-    assert len(world.searches) == 1
+    assert len(world.searches) == Config().search_regions_per_frame
 
 
 def test_search_goes_on_while_fewer_are_followed_and_adds_nobody_twice():
     world = World((100, 100))
-    follower, config = HandFollower(world, world), Config(max_hands=2)
+    follower, config = follower_of(world), Config(max_hands=2, search_regions_per_frame=1)
     for stamp in range(3):
         assert len(follower.step(image(stamp), config)) == 1
     assert len(world.searches) == 3
@@ -84,7 +99,7 @@ def test_search_goes_on_while_fewer_are_followed_and_adds_nobody_twice():
 
 def test_a_followed_hand_is_kept_where_the_search_would_miss_it():
     world = World((100, 100))
-    follower = HandFollower(world, world)
+    follower = follower_of(world)
     follower.step(image(0), Config())
     world.hidden_from_search = True
     for stamp in range(1, 6):
@@ -94,7 +109,7 @@ def test_a_followed_hand_is_kept_where_the_search_would_miss_it():
 
 def test_followed_hands_keep_their_rows_whatever_the_search_finds_first():
     world = World((100, 100), (300, 100))
-    follower = HandFollower(world, world)
+    follower = follower_of(world)
     follower.step(image(0), Config())
     world.centers.reverse()
     assert wrists(follower.step(image(1), Config())) == [[100, 100], [300, 100]]
@@ -103,7 +118,7 @@ def test_followed_hands_keep_their_rows_whatever_the_search_finds_first():
 @pytest.mark.parametrize(("confidence", "count"), [(0.55, 1), (0.65, 0)])
 def test_a_hand_is_kept_from_tracking_confidence_on(confidence, count):
     world = World((100, 100))
-    follower = HandFollower(world, world)
+    follower = follower_of(world)
     config = Config(tracking_confidence=confidence)
     follower.step(image(0), config)
     world.score = 0.6
@@ -112,7 +127,7 @@ def test_a_hand_is_kept_from_tracking_confidence_on(confidence, count):
 
 def test_a_hand_that_left_makes_room_for_another():
     world = World((100, 100))
-    follower, config = HandFollower(world, world), Config(max_hands=1)
+    follower, config = follower_of(world), Config(max_hands=1)
     follower.step(image(0), config)
     world.centers = [np.array([400.0, 300.0])]
     assert len(follower.step(image(1), config)) == 0
@@ -126,7 +141,7 @@ def test_a_hand_that_left_makes_room_for_another():
 )
 def test_following_starts_anew_after_a(odd):
     world = World((100, 100))
-    follower = HandFollower(world, world)
+    follower = follower_of(world)
     assert len(follower.step(image(10), Config())) == 1
     world.hidden_from_search = True
     assert len(follower.step(odd, Config())) == 0
@@ -134,7 +149,7 @@ def test_following_starts_anew_after_a(odd):
 
 def test_following_starts_anew_after_reset():
     world = World((100, 100))
-    follower = HandFollower(world, world)
+    follower = follower_of(world)
     follower.step(image(10), Config())
     follower.reset()
     world.hidden_from_search = True
@@ -143,23 +158,64 @@ def test_following_starts_anew_after_reset():
 
 def test_no_more_hands_than_allowed_even_after_the_limit_is_lowered():
     world = World((100, 100), (300, 100), (500, 300))
-    follower = HandFollower(world, world)
+    follower = follower_of(world)
     assert len(follower.step(image(0), Config(max_hands=2))) == 2
     assert wrists(follower.step(image(1), Config(max_hands=1))) == [[100, 100]]
 
 
 def test_parameters_reach_the_search():
     world = World()
-    config = Config(detection_confidence=0.7, downscale_factor=3)
-    assert len(HandFollower(world, world).step(image(), config)) == 0
-    assert world.searches == [(0.7, None, 3)]
+    config = Config(detection_confidence=0.7, downscale_factor=3, search_regions_per_frame=2)
+    assert len(follower_of(world).step(image(), config)) == 0
+    # The whole frame is shrunk; the first tile is cut from the full image.
+    assert world.searches == [(0.7, None, 3), (0.7, (0, 0, 240, 240), 1)]
+
+
+def test_an_expected_place_is_searched_soon():
+    world = World()
+    follower, config = follower_of(world), Config(search_regions_per_frame=2)
+    follower.step(image(), config, np.array([[300.0, 50.0, 420.0, 170.0]]))
+    assert [window for _, window, _ in world.searches] == [None, (300, 50, 120, 120)]
+
+
+def test_an_expected_place_whose_hand_is_followed_needs_no_search():
+    world = World((360, 100))
+    follower, config = follower_of(world), Config(search_regions_per_frame=1)
+    follower.step(image(0), config)
+    for stamp in range(1, 20):
+        follower.step(image(stamp), config, np.array([[300.0, 50.0, 420.0, 170.0]]))
+    assert (300, 50, 120, 120) not in [window for _, window, _ in world.searches]
+
+
+def test_hands_that_do_not_point_up_are_neither_read_nor_followed():
+    def lying(palms):
+        keypoints = palms.keypoints_px.copy()
+        keypoints[:, 2] = keypoints[:, 0] + (20, -4)  # 79 degrees
+        return Palms(palms.boxes_px, keypoints, palms.score)
+
+    world = World((100, 100))
+    find = world.find
+    world.find = lambda *rest, **more: lying(find(*rest, **more))
+    assert len(follower_of(world).step(image(), Config())) == 0
+    for all_hands in [Config(search_lean_max_deg=180.0), Config(raise_rule="image")]:
+        assert len(follower_of(world).step(image(), all_hands)) == 1
+
+
+def test_each_hand_knows_its_row_in_the_last_image():
+    world = World((100, 100), (300, 100))
+    follower = follower_of(world)
+    follower.step(image(0), Config())
+    assert follower.rows.tolist() == [-1, -1]
+    world.centers = [world.centers[1], np.array([500.0, 300.0])]
+    follower.step(image(1), Config())
+    assert follower.rows.tolist() == [1, -1]
 
 
 def test_two_regions_that_lead_to_one_hand_give_one_row():
     world = World((100, 100))
     shifted = World((100, 100), (128, 128))  # regions of less than half overlap, one hand
     shifted.read = world.read
-    assert wrists(HandFollower(shifted, shifted).step(image(), Config())) == [[100, 100]]
+    assert wrists(follower_of(shifted).step(image(), Config())) == [[100, 100]]
 
 
 def test_palms_that_make_no_region_are_passed_over():
@@ -167,7 +223,7 @@ def test_palms_that_make_no_region_are_passed_over():
     world.find = lambda *_, **__: Palms(
         np.array([[5.0, 5, 5, 5], [np.nan] * 4]), np.zeros((2, 7, 2)), np.ones(2)
     )
-    assert len(HandFollower(world, world).step(image(), Config())) == 0
+    assert len(follower_of(world).step(image(), Config())) == 0
 
 
 def test_found_regions_over_known_ones_are_dropped():
@@ -184,10 +240,18 @@ def test_found_regions_over_known_ones_are_dropped():
 
 def test_of_the_same_hand_the_surest_row_stays_and_order_is_kept():
     points = np.stack([hand_at((300, 100)), hand_at((100, 100)), hand_at((101, 101))])
-    hands = drop_repeated(Landmarks(points, np.array([0.6, 0.7, 0.9]), np.zeros(3)))
-    assert hands.score.tolist() == [0.6, 0.9]
+    hands = Landmarks(points, np.array([0.6, 0.7, 0.9]), np.zeros(3))
+    assert first_of_each_hand(hands).tolist() == [True, False, True]
+
+
+def test_fingers_taken_for_a_small_hand_are_the_hand_they_belong_to():
+    large = hand_at((100, 100))
+    points = np.stack([large, HAND * 0.5 * SIDE_PX + (104, 95), HAND * 0.5 * SIDE_PX + (190, 95)])
+    hands = Landmarks(points, np.array([0.9, 0.8, 0.7]), np.zeros(3))
+    assert first_of_each_hand(hands).tolist() == [True, False, True]
 
 
 def test_hands_that_clasp_stay_two():
     points = np.stack([hand_at((100, 100)), hand_at((115, 100))])
-    assert len(drop_repeated(Landmarks(points, np.array([0.6, 0.7]), np.zeros(2)))) == 2
+    hands = Landmarks(points, np.array([0.6, 0.7]), np.zeros(2))
+    assert first_of_each_hand(hands).all()

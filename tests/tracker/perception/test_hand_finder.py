@@ -17,8 +17,17 @@ pytestmark = pytest.mark.model
 
 @pytest.fixture(scope="module", params=[0, 1], ids=["lite", "full"])
 def finder(request, model_store):
-    """Both complexities, on the full picture; tests start from a clean memory."""
-    return HandFinder(Config(model_complexity=request.param, downscale_factor=1), model_store)
+    """Both complexities, as MediaPipe: on the full picture, hands that point anywhere.
+
+    Tests start from a clean memory.
+    """
+    config = Config(
+        model_complexity=request.param,
+        downscale_factor=1,
+        search_regions_per_frame=1,
+        search_lean_max_deg=180.0,
+    )
+    return HandFinder(config, model_store)
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +97,7 @@ def test_other_hands_are_found_but_not_raised(full_finder, name, factor):
 def test_a_hand_that_points_down_measures_below_zero(full_finder):
     # The raised palm upside down, as an arm that hangs.
     upright = photo("hagrid_gesture_palm.png")
-    full_finder.configure(Config(model_complexity=1))
+    full_finder.configure(Config(model_complexity=1, search_lean_max_deg=180.0))
     found = find_fresh(full_finder, CameraImage(0, "", upright.bgr[::-1, ::-1].copy()))
     assert found.raised.tolist() == [False]
     assert found.raise_measure[0] < -1.5
@@ -105,7 +114,7 @@ def test_a_mirrored_hand_is_the_other_hand(full_finder):
 def test_a_hand_is_followed_through_the_picture_with_one_search(finder, monkeypatch):
     hand = cv2.resize(photo("hagrid_gesture_palm.png").bgr, (200, 200))
     searches = []
-    search = finder._follower._searcher
+    search = finder._follower._whole
     find = search.find
     monkeypatch.setattr(
         search, "find", lambda *rest, **more: searches.append(1) or find(*rest, **more)

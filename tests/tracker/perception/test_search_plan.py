@@ -1,0 +1,100 @@
+import numpy as np
+import pytest
+
+from tracker.perception.search_plan import SearchPlan, clip_boxes, rotation_windows
+
+SIZE = (640, 480)
+NOWHERE = np.zeros((0, 4))
+
+
+def choices(frames, count=1, expected=NOWHERE, moved=NOWHERE, plan=None):
+    """The windows of each frame, as tuples."""
+    plan = plan or SearchPlan(SIZE)
+    return [
+        [tuple(window) for window in plan.choose(count, expected, moved).tolist()]
+        for _ in range(frames)
+    ]
+
+
+def all_places(width, height):
+    return {
+        tuple(window) for window in rotation_windows(width, height).round().astype(int).tolist()
+    }
+
+
+def test_a_vga_picture_has_the_whole_and_fifteen_tiles():
+    windows = rotation_windows(*SIZE)
+    assert windows[0].tolist() == [0, 0, 640, 480]
+    assert sorted(set(windows[1:, 0])) == [0, 100, 200, 300, 400]
+    assert sorted(set(windows[1:, 1])) == [0, 120, 240]
+    assert set((windows[1:, 2:] - windows[1:, :2]).ravel()) == {240}
+
+
+@pytest.mark.parametrize("size", [(1920, 1080), (480, 640), (300, 300), (1000, 100), (1, 1)])
+def test_tiles_of_any_picture_cover_every_part_and_lie_close(size):
+    windows = rotation_windows(*size)[1:]
+    side = min(size) / 2
+    np.testing.assert_allclose(windows[:, 2:] - windows[:, :2], side)
+    assert windows.min() == 0
+    np.testing.assert_allclose(windows.max(axis=0)[2:], size)
+    for axis, step in ((0, 0.42), (1, 0.5)):
+        assert np.all(np.diff(np.unique(windows[:, axis])) <= step * side + 1e-9)
+
+
+def test_a_picture_at_rest_is_searched_all_over_and_the_whole_most_often():
+    seen = [window for frame in choices(40) for window in frame]
+    assert seen[0] == (0, 0, 640, 480)
+    assert set(seen) == all_places(*SIZE)
+    assert seen.count((0, 0, 640, 480)) >= 7
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_no_place_waits_longer_than_a_bound_whatever_is_expected_and_moves(count):
+    rng = np.random.default_rng(4)
+    plan, last, longest = SearchPlan(SIZE), {place: 0 for place in all_places(*SIZE)}, 0
+    for frame in range(600):
+        # A robot that turns: six people and as many movements are somewhere else each time.
+        corner = rng.uniform(0, 400, (6, 2))
+        boxes = np.concatenate([corner, corner + rng.uniform(60, 240, (6, 1))], axis=1)
+        for window in plan.choose(count, boxes, boxes).tolist():
+            if tuple(window) in last:
+                last[tuple(window)] = frame
+        longest = max(longest, *(frame - then for then in last.values()))
+    # New places need at most 4 * 20, so that no tile's age exceeds 80 by more than all others.
+    assert longest <= 80 + 16 / count
+
+
+def test_a_few_expected_places_come_every_few_frames_and_the_rest_still():
+    people = np.array([[100.0, 50, 220, 170], [400, 60, 520, 180]])
+    seen = [window for frame in choices(200, expected=people) for window in frame]
+    for place in people.astype(int).tolist():
+        turns = np.flatnonzero([window == tuple(place) for window in seen])
+        assert turns[0] <= 2
+        assert np.diff(turns).max() <= 12
+    assert all_places(*SIZE) <= set(seen)
+
+
+def test_tiles_where_something_moved_come_before_the_rest():
+    plan = SearchPlan(SIZE)
+    choices(40, plan=plan)
+    moved = np.array([[500.0, 300, 520, 330]])
+    seen = [frame[0] for frame in choices(6, moved=moved, plan=plan)]
+    assert {(400, 240, 640, 480), (400, 120, 640, 360), (300, 240, 540, 480)} <= set(seen)
+
+
+def test_places_of_one_frame_differ():
+    for frame in choices(20, count=5, expected=np.array([[100.0, 50, 220, 170]])):
+        assert len(set(frame)) == 5
+
+
+def test_there_are_no_more_choices_than_places():
+    assert len(choices(1, count=64)[0]) == 16
+
+
+def test_the_same_calls_make_the_same_choices():
+    assert choices(30) == choices(30)
+
+
+def test_boxes_outside_of_the_picture_are_left_out_and_others_cut():
+    boxes = np.array([[-50.0, -20, 30, 40], [700, 0, 800, 90], [600, 470, 900, 900]])
+    assert clip_boxes(boxes, SIZE).tolist() == [[0, 0, 30, 40], [600, 470, 640, 480]]

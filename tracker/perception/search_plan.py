@@ -1,0 +1,125 @@
+"""Where does the palm search look next? The places of the picture, by need.
+
+A hand at three meters is lost in a whole picture squeezed to the model's input, so pieces of the
+picture are searched as well: a rotation of the whole frame and overlapping tiles, and windows
+around people who are expected somewhere. A few of them are searched in each image; the longer ago
+one was, the greater its need, and where a hand is likelier its need grows faster.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.perception.regions import box_overlap
+
+#: A tile's side, in short sides of the picture: at 640 x 480 a tile of 240 px, in which a hand at
+#: three meters is 28 px long.
+TILE_SIDE = 0.5
+#: The most that neighboring tiles are apart, in their sides. A hand in the overlap is seen whole
+#: by one of them; people stand side by side, so that columns lie closer than rows. Six tiles
+#: instead of the fifteen that this makes of 640 x 480 lost a tenth of the hands.
+TILE_STEPS = (0.42, 0.5)
+#: How many times as fast as a tile's the need of a place grows.
+EXPECTED_WEIGHT, WHOLE_WEIGHT, MOVED_WEIGHT = 4.0, 4.0, 3.0
+#: Windows that overlap more than this are the same place; neighboring tiles overlap by 0.41.
+SAME_PLACE_OVERLAP = 0.5
+#: A place where nobody has looked yet needs it as much as one left alone for so many images. The
+#: limit keeps windows that wander, with a robot that turns, from starving the rest.
+NEW_AGE = 20
+
+
+class SearchPlan:
+    """The places of pictures of one size; remembers where was looked, says where to look.
+
+    Args:
+        image_size: Width and height in pixels.
+    """
+
+    def __init__(self, image_size: tuple[int, int]) -> None:
+        self._size = image_size
+        self._rotation = rotation_windows(*image_size)
+        self._turn = 0
+        self._rotation_turn = np.full(len(self._rotation), -NEW_AGE)
+        self._lately: deque[tuple[int, FloatArray]] = deque()
+
+    def choose(self, count: int, expected_px: FloatArray, moved_px: FloatArray) -> IntArray:
+        """The places to search in the next image; every call is one image.
+
+        Args:
+            count: How many.
+            expected_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows where raised hands
+                are expected; each is a place of its own.
+            moved_px: Shape (M, 4): boxes in which something moved; they draw the tiles that hold
+                their centers.
+
+        Returns:
+            Shape (K, 4): windows, the neediest first; K is `count`, or all places if these are
+            fewer.
+        """
+        self._turn += 1
+        while self._lately and self._lately[0][0] <= self._turn - NEW_AGE:
+            self._lately.popleft()
+        tiles = len(self._rotation)
+        places = np.concatenate([self._rotation, clip_boxes(expected_px, self._size)])
+        weight = np.full(len(places), EXPECTED_WEIGHT)
+        weight[:tiles] = np.where(_holds_center(self._rotation, moved_px), MOVED_WEIGHT, 1.0)
+        weight[0] = WHOLE_WEIGHT
+        chosen: list[int] = []
+        for _ in range(min(count, len(places))):
+            age = np.concatenate([self._turn - self._rotation_turn, self._ages(places[tiles:])])
+            need = weight * age
+            need[chosen] = -1.0
+            place = int(np.argmax(need))
+            chosen.append(place)
+            self._lately.append((self._turn, places[place]))
+            if place < tiles:
+                self._rotation_turn[place] = self._turn
+        windows: IntArray = places[chosen].round().astype(np.int64)
+        return windows
+
+    def _ages(self, places: FloatArray) -> FloatArray:
+        """Shape (P,): images since any window at the same place was searched."""
+        if not self._lately:
+            return np.full(len(places), float(NEW_AGE))
+        turns = np.array([turn for turn, _ in self._lately])
+        windows = np.stack([window for _, window in self._lately])
+        is_same = box_overlap(places, windows) > SAME_PLACE_OVERLAP
+        age = np.where(is_same, self._turn - turns, NEW_AGE)
+        return np.asarray(age.min(axis=1), dtype=np.float64)
+
+
+def rotation_windows(width: int, height: int) -> FloatArray:
+    """The whole picture, then the tiles that cover it, row by row.
+
+    Returns:
+        Shape (R, 4): x_min, y_min, x_max, y_max; R is 16 for 640 x 480.
+    """
+    whole = [0.0, 0.0, float(width), float(height)]
+    side = TILE_SIDE * min(width, height)
+    x, y = (
+        np.linspace(0.0, size - side, 1 + int(np.ceil((size - side) / (step * side))))
+        for size, step in zip((width, height), TILE_STEPS, strict=True)
+    )
+    left, top = (grid.ravel() for grid in np.meshgrid(x, y))
+    tiles = np.stack([left, top, left + side, top + side], axis=-1)
+    return np.concatenate([[whole], tiles])
+
+
+def clip_boxes(boxes_px: FloatArray, image_size: tuple[int, int]) -> FloatArray:
+    """The part of each box that lies in the picture; boxes of which none does are left out.
+
+    Args:
+        boxes_px: Shape (B, 4): x_min, y_min, x_max, y_max.
+        image_size: Width and height in pixels.
+    """
+    clipped = np.clip(boxes_px, 0.0, np.tile(np.asarray(image_size, dtype=float), 2))
+    return clipped[np.all(clipped[:, 2:] - clipped[:, :2] >= 1.0, axis=1)]
+
+
+def _holds_center(windows: FloatArray, boxes: FloatArray) -> BoolArray:
+    center = (boxes[:, :2] + boxes[:, 2:]) / 2
+    inside = (center >= windows[:, None, :2]) & (center <= windows[:, None, 2:])
+    return np.asarray(inside.all(axis=-1).any(axis=-1), dtype=np.bool_)
