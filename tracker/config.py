@@ -121,6 +121,23 @@ class Config(BaseModel):
         1.1, "`raise_rule: palm`: how far the middle finger's tip must be above the wrist.",
         unit="palm lengths", group="perception", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
+    palm_lowered_threshold: float = _parameter(
+        0.9, "`raise_rule: palm`: a hand that is up stays up above this.",
+        unit="palm lengths", group="perception", live=True, ge=0.0, le=3.0,
+    )  # fmt: skip
+    raised_score_min: float = _parameter(
+        0.8, "`raise_rule: palm`: landmark score without which no hand goes up.",
+        group="perception", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+    small_hand_px: float = _parameter(
+        32.0, "`raise_rule: palm`: a hand shorter than this (at 2.6 m, with the default camera) "
+        "counts as raised ...",
+        unit="px", group="perception", live=True, ge=0.0, le=10000.0,
+    )  # fmt: skip
+    small_hand_patience_s: float = _parameter(
+        0.4, "... once it has been up for so long; what looks like one is often none.",
+        unit="s", group="perception", live=True, ge=0.0, le=10.0,
+    )  # fmt: skip
     raised_lean_max_deg: float = _parameter(
         50.0, "`raise_rule: palm`: a hand that leans farther to a side is not up, but on its "
         "way down.",
@@ -197,8 +214,13 @@ class Config(BaseModel):
         unit="m", group="ranging", live=True, ge=0.0, le=1.0,
     )  # fmt: skip
     wrist_std_px: float = _parameter(
-        2.0, "Noise of the wrist's column in the full image.",
+        1.0, "Error of the wrist's column in the full image, for the smallest hand; it stays as "
+        "long as the hand is followed, and some noise is added to it ...",
         unit="px", group="ranging", live=True, gt=0.0, le=100.0,
+    )  # fmt: skip
+    wrist_std_share: float = _parameter(
+        0.02, "... and how it grows with the hand's length.",
+        unit="hand lengths", group="ranging", live=True, ge=0.0, le=1.0,
     )  # fmt: skip
     unknown_range_m: float = _parameter(
         2.5, "Where the scan gives nothing, a new customer is supposed at this range ...",
@@ -350,11 +372,16 @@ class Config(BaseModel):
     )  # fmt: skip
 
     @model_validator(mode="after")
-    def _window_holds_detections(self) -> Config:
+    def _bounds_agree(self) -> Config:
         if self.confirm_detections > self.confirm_window:
             raise ValueError(
                 f"confirm_detections is {self.confirm_detections}; it must not exceed "
                 f"confirm_window, which is {self.confirm_window}"
+            )
+        if self.palm_lowered_threshold > self.palm_raised_threshold:
+            raise ValueError(
+                f"palm_lowered_threshold is {self.palm_lowered_threshold:g}; it must not exceed "
+                f"palm_raised_threshold, which is {self.palm_raised_threshold:g}"
             )
         return self
 

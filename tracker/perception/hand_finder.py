@@ -10,7 +10,7 @@ from tracker.perception.following import HandFollower
 from tracker.perception.landmarks import LandmarkReader
 from tracker.perception.models import ModelStore
 from tracker.perception.palm_search import PalmSearch
-from tracker.perception.raise_rules import judge_raised
+from tracker.perception.raise_memory import RaiseMemory
 
 #: What the palm model sees of a piece of the picture: a square of this side. It costs three
 #: quarters of the model's own 192 px and finds as much in tiles of 240 px.
@@ -35,6 +35,7 @@ class HandFinder:
         self._store = store if store is not None else ModelStore()
         self._config = config
         self._follower = self._open(config)
+        self._memory = RaiseMemory()
         self._expected_px = _NOWHERE
 
     def expect(self, boxes_px: FloatArray) -> None:
@@ -53,13 +54,16 @@ class HandFinder:
         are read from the full image, so that their accuracy does not depend on it.
         """
         expected_px, self._expected_px = self._expected_px, _NOWHERE
-        found, _ = self._follower.step(image, self._config, expected_px)
-        raised, measure = judge_raised(found.points_px, (image.width, image.height), self._config)
+        found, last_rows = self._follower.step(image, self._config, expected_px)
+        raised, measure = self._memory.judge(
+            image.stamp_ns, found, last_rows, (image.width, image.height), self._config
+        )
         return Hands(found.points_px, found.score, found.right, raised, measure)
 
     def reset(self) -> None:
         """Forget the hands of earlier images."""
         self._follower.reset()
+        self._memory.reset()
 
     def configure(self, config: Config) -> None:
         """Take over changed parameters, from the next image on; reopens the models if it must.

@@ -1,0 +1,85 @@
+import numpy as np
+
+from tracker.config import Config
+from tracker.perception.landmarks import Landmarks
+from tracker.perception.raise_memory import RaiseMemory
+
+SIZE = (640, 480)
+PERIOD_NS = 100_000_000
+CONFIG = Config(small_hand_patience_s=0.3)
+
+
+def hand(rise_palms, palm_px=60.0, score=0.95):
+    """One hand that points straight up; its middle finger's tip so many palms above the wrist."""
+    points = np.zeros((1, 21, 2))
+    points[0, 9, 1] = -palm_px
+    points[0, 12, 1] = -rise_palms * palm_px
+    return Landmarks(points + 200.0, np.array([score]), np.array([0.5]))
+
+
+def verdicts(hands, config=CONFIG, rows=None, memory=None):
+    """Of one followed hand, image after image."""
+    memory = memory or RaiseMemory()
+    rows = rows or [-1] + [0] * (len(hands) - 1)
+    return [
+        bool(memory.judge(frame * PERIOD_NS, one, np.array([row]), SIZE, config)[0][0])
+        for frame, (one, row) in enumerate(zip(hands, rows, strict=True))
+    ]
+
+
+def test_a_hand_goes_up_at_one_threshold_and_down_at_a_lower_one():
+    rises = [1.0, 1.2, 1.0, 0.95, 0.85, 1.0, 1.2]
+    assert verdicts([hand(rise) for rise in rises]) == [
+        False,
+        True,
+        True,
+        True,
+        False,
+        False,
+        True,
+    ]
+
+
+def test_an_unsure_hand_does_not_go_up_but_stays_up():
+    scores = [0.7, 0.85, 0.6]
+    assert verdicts([hand(1.8, score=score) for score in scores]) == [False, True, True]
+
+
+def test_a_small_hand_counts_once_it_has_been_up_for_a_while():
+    small = [hand(1.8, palm_px=10.0)] * 6
+    assert verdicts(small) == [False, False, False, True, True, True]
+
+
+def test_a_small_hand_that_goes_down_begins_anew():
+    up, down = hand(1.8, palm_px=10.0), hand(0.5, palm_px=10.0)
+    assert verdicts([up, up, down, up, up, up, up])[3:] == [False, False, False, True]
+
+
+def test_a_hand_that_is_newly_found_remembers_nothing():
+    between = hand(1.0)
+    assert verdicts([hand(1.8), between, between], rows=[-1, 0, -1]) == [True, True, False]
+
+
+def test_memories_follow_hands_that_change_rows():
+    memory = RaiseMemory()
+    up, between = hand(1.8), hand(1.0)
+    both = Landmarks.concatenate(between, up)
+    memory.judge(0, both, np.array([-1, -1]), SIZE, CONFIG)
+    again = Landmarks.concatenate(between, between)
+    raised, _ = memory.judge(PERIOD_NS, again, np.array([1, 0]), SIZE, CONFIG)
+    assert raised.tolist() == [True, False]
+
+
+def test_reset_forgets():
+    memory = RaiseMemory()
+    memory.judge(0, hand(1.8), np.array([-1]), SIZE, CONFIG)
+    memory.reset()
+    assert verdicts([hand(1.0)], memory=memory) == [False]
+
+
+def test_the_specification_s_rule_has_neither_memory_nor_patience():
+    config = Config(raise_rule="image", hand_raised_threshold=0.1, hand_span_threshold=0.0)
+    spread = hand(1.8)
+    spread.points_px[0, 20, 0] += 10.0
+    assert verdicts([spread, spread], config) == [True, True]
+    assert verdicts([hand(1.0), spread, hand(1.0)], config) == [False, True, False]
