@@ -63,8 +63,25 @@ def test_an_optical_frame_sees_what_its_body_frame_sees():
 
 
 def test_pixel_noise_becomes_bearing_noise_by_the_pinhole_s_derivative():
+    # A hand without length: 0.3 px differ from image to image, 2 px stay.
     rays = hand_rays(hands_at((420, 240)), CAMERA, RigidTransform(), Config(wrist_std_px=2.0))
-    step = hand_rays(hands_at((422, 240)), CAMERA, RigidTransform(), Config())
+    step = hand_rays(hands_at((420 + np.hypot(0.3, 2.0), 240)), CAMERA, RigidTransform(), Config())
     assert rays.bearing_std_rad[0] == pytest.approx(
         abs(step.bearing_rad[0] - rays.bearing_rad[0]), rel=0.01
     )
+
+
+@pytest.mark.parametrize(
+    ("length_px", "noise_px"),
+    [
+        (16.0, np.hypot(0.38, 1.32)),  # five meters away: 0.16 degrees
+        (83.0, np.hypot(0.715, 2.66)),  # one meter
+    ],
+)
+def test_a_wrist_is_as_uncertain_as_its_hand_is_large(length_px, noise_px):
+    hand = hands_at((320, 240))
+    points = hand.landmarks_px.copy()
+    points[0, 12, 1] -= length_px
+    longer = Hands(points, hand.score, hand.right, hand.raised, hand.raise_measure)
+    rays = hand_rays(longer, CAMERA, RigidTransform(), Config())
+    assert rays.bearing_std_rad[0] * CAMERA.fx == pytest.approx(noise_px)
