@@ -19,12 +19,13 @@ from nodes.inbox import IMAGES_KEPT, Inbox, WaitingImage
 from nodes.outputs import HasSubscribers, Publish, publish_answer, publish_nobody, publish_views
 from nodes.stamp_watch import StampWatch, Step
 from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
+from nodes.work_budget import WorkBudget
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Scan
 from tracker.errors import TrackerError
 from tracker.messages import Encoded, decode
-from tracker.perception.detector import HandDetector
+from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.pipeline import Pipeline
 from tracker.transforms import StampedTransform, Transforms
 
@@ -96,6 +97,7 @@ class NodeCore:
         self._transform_watches: dict[str, StampWatch] = {}
         self._transforms_until_ns: int | None = None
         self._busy_s = 0.0
+        self._budget = WorkBudget()
         self._began_ns = steady_ns()
         self._is_enabled = True
         self._last: FrameResult | None = None
@@ -321,12 +323,21 @@ class NodeCore:
         busy_s = (self._steady_ns() - began_ns) / 1e9
         self._busy_s += (busy_s - self._busy_s) / _BUSY_IMAGES
         self._diagnostics.processed(result, latency_s, busy_s)
+        self._pace(result)
         publish_views(image, result, self._config, self._publish, self._has_subscribers)
         for note in result.notes:
             if note.startswith("stamps jumped back"):
                 self._note_reset(note)
             else:
                 self._remarks.add(Input.IMAGES.value, note)
+
+    def _pace(self, result: FrameResult) -> None:
+        """Let the search shrink before images are lost, and grow again."""
+        detector = self._pipeline.detector
+        if result.work is not None and isinstance(detector, PiecewiseDetector):
+            busy_share = self._busy_s * self._config.processing_rate
+            most = self._config.search_regions_per_frame
+            detector.set_budget(self._budget.after(result.work, busy_share, most))
 
     def _release(self) -> None:
         self._pipeline.tracker.selector.release()

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from nodes.topics import DIAGNOSTICS_TYPE, Input
 from tracker.config import NODE_NAME, Config
-from tracker.containers import FrameResult
+from tracker.containers import FrameResult, PerceptionWork
 from tracker.messages import Encoded
 from tracker.messages.encode import header
 from tracker.messages.types import build, serialize
@@ -28,6 +28,9 @@ SILENT_S = 0.9
 _LATENCIES, _REPORTS = 200, 10
 #: Stamps farther than this from the node's clock are of another time, not late.
 _OTHER_TIME_S = 10.0
+
+#: Of perception, as `PerceptionWork` has them.
+_STAGES = ("search", "new_hands")
 
 OK, WARN, ERROR = 0, 1, 2
 
@@ -77,6 +80,7 @@ class Diagnostics:
         self._inputs = {item: _Watched() for item in Input}
         self._latency_s = deque[float](maxlen=_LATENCIES)
         self._busy_s = deque[float](maxlen=_LATENCIES)
+        self._work = deque[PerceptionWork](maxlen=_LATENCIES)
         self._reports = deque[tuple[int, dict[str, int]]](maxlen=_REPORTS + 1)
         self._last: FrameResult | None = None
         self._processed = 0
@@ -109,6 +113,8 @@ class Diagnostics:
             self._last = result
             self._latency_s.append(latency_s)
             self._busy_s.append(busy_s)
+            if result.work is not None:
+                self._work.append(result.work)
             self._last_frame_ns = self._steady_ns()
             if result.sensor_pose is not None:
                 self._located_ns = self._last_frame_ns
@@ -206,6 +212,8 @@ class Diagnostics:
             "raise_rule": config.raise_rule,
             "notes": "; ".join(self._last.notes) if self._last else "",
         }
+        if self._work:
+            values |= _work_values(self._work)
         if abs(middle_s) > _OTHER_TIME_S:
             values["latency"] = (
                 f"stamps are {middle_s:.1f} s from the node's clock: is use_sim_time right?"
@@ -262,6 +270,16 @@ def encode_statuses(statuses: list[Status], stamp_ns: int) -> Encoded:
         for status in statuses
     ]
     return serialize(build(DIAGNOSTICS_TYPE, header=header(stamp_ns, ""), status=lines))
+
+
+def _work_values(work: Collection[PerceptionWork]) -> dict[str, object]:
+    """What perception did of late: counts on average, times in the middle."""
+    stages = {name: np.array([getattr(each, f"{name}_s") for each in work]) for name in _STAGES}
+    return {
+        "places_searched_mean": f"{np.mean([each.places for each in work]):.1f}",
+        "hands_read_mean": f"{np.mean([each.hands for each in work]):.1f}",
+        **{f"{name}_ms_median": _milliseconds(times, 50) for name, times in stages.items()},
+    }
 
 
 def _milliseconds(values_s: np.ndarray, percentile: float) -> str:

@@ -139,8 +139,11 @@ class Config(BaseModel):
         unit="s", group="perception", live=True, ge=0.0, le=10.0,
     )  # fmt: skip
     raised_lean_max_deg: float = _parameter(
-        50.0, "`raise_rule: palm`: a hand that leans farther to a side is not up, but on its "
-        "way down.",
+        35.0, "`raise_rule: palm`: a hand that leans farther to a side does not go up ...",
+        unit="deg", group="perception", live=True, gt=0.0, le=90.0,
+    )  # fmt: skip
+    lowered_lean_min_deg: float = _parameter(
+        50.0, "... and one that is up and leans farther than this is on its way down.",
         unit="deg", group="perception", live=True, gt=0.0, le=90.0,
     )  # fmt: skip
     hand_span_threshold: float = _parameter(
@@ -382,6 +385,11 @@ class Config(BaseModel):
             raise ValueError(
                 f"palm_lowered_threshold is {self.palm_lowered_threshold:g}; it must not exceed "
                 f"palm_raised_threshold, which is {self.palm_raised_threshold:g}"
+            )
+        if self.lowered_lean_min_deg < self.raised_lean_max_deg:
+            raise ValueError(
+                f"lowered_lean_min_deg is {self.lowered_lean_min_deg:g}; it must not be below "
+                f"raised_lean_max_deg, which is {self.raised_lean_max_deg:g}"
             )
         return self
 

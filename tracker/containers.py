@@ -463,6 +463,25 @@ class Truth:
         return len(self.id)
 
 
+@dataclass(frozen=True, slots=True)
+class PerceptionWork:
+    """What perception did for one image, and how long each stage took on the wall.
+
+    Attributes:
+        places: Parts of the picture that were searched for palms.
+        hands: Regions in which landmarks were read.
+        search_s: Palm searches, and beside them the landmarks of followed hands.
+        new_hands_s: Landmarks of what the search found.
+        total_s: All of it.
+    """
+
+    places: int = 0
+    hands: int = 0
+    search_s: float = 0.0
+    new_hands_s: float = 0.0
+    total_s: float = 0.0
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameResult:
     """Everything one processed image led to.
@@ -481,6 +500,8 @@ class FrameResult:
         scan_pose: x_m, y_m, yaw_rad of that scan's laser in the fixed frame, if known.
         notes: What was missing or odd about this image, as short sentences ("no scan within
             0.2 s").
+        work: What perception did, where the detector tells; of all fields the only one that
+            differs when the same recording is replayed.
     """
 
     stamp_ns: int
@@ -494,6 +515,7 @@ class FrameResult:
     scan: Scan | None
     scan_pose: FloatArray | None
     notes: tuple[str, ...] = ()
+    work: PerceptionWork | None = None
 
 
 def check_stamp(stamp_ns: int) -> None:

@@ -19,7 +19,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Measurements, Scan
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform
-from tracker.perception.detector import HandDetector, LooksAhead
+from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.ranging import (
     Background,
     body_pose,
@@ -134,9 +134,10 @@ class Pipeline:
 
         fixed_from_camera, is_located = self._locate_camera(image)
         scan, laser_pose = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
-        if is_located and isinstance(self.detector, LooksAhead):
+        piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
+        if piecewise is not None and is_located:
             people = self._known_people(scan, laser_pose)
-            self.detector.expect(expected_hands(people, self.camera, fixed_from_camera))
+            piecewise.expect(expected_hands(people, self.camera, fixed_from_camera))
         hands = self.detector.find(image)
         measurements = measure_people(
             hands,
@@ -178,6 +179,7 @@ class Pipeline:
             scan=scan,
             scan_pose=laser_pose,
             notes=tuple(self._notes),
+            work=piecewise.work if piecewise is not None else None,
         )
 
     def configure(self, config: Config) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol, runtime_checkable
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands
+from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
 
 
 @runtime_checkable
@@ -30,13 +30,25 @@ class HandDetector(Protocol):
 
 
 @runtime_checkable
-class LooksAhead(Protocol):
-    """A detector that searches the picture piece by piece, and wants to know where to begin."""
+class PiecewiseDetector(HandDetector, Protocol):
+    """A detector that searches the picture piece by piece: it can be told where, and how much."""
+
+    @property
+    def work(self) -> PerceptionWork:
+        """What the last image cost."""
+        ...
 
     def expect(self, boxes_px: FloatArray) -> None:
         """Where raised hands are likelier than elsewhere in the next image.
 
         Args:
             boxes_px: Shape (E, 4): x_min, y_min, x_max, y_max in pixels of the full image.
+        """
+        ...
+
+    def set_budget(self, runs: int | None) -> None:
+        """How many model runs an image may take from now on; None is as configured.
+
+        The search shrinks for it, down to one place in an image; followed hands are kept.
         """
         ...

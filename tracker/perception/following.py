@@ -6,6 +6,7 @@ order of rows. At the same time the picture is searched for more, a few places i
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Protocol
@@ -13,7 +14,14 @@ from typing import Protocol
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import BoolArray, CameraImage, FloatArray, ImageArray, IntArray
+from tracker.containers import (
+    BoolArray,
+    CameraImage,
+    FloatArray,
+    ImageArray,
+    IntArray,
+    PerceptionWork,
+)
 from tracker.perception.landmarks import Landmarks
 from tracker.perception.movement import Movement
 from tracker.perception.palm_search import Palms, Window
@@ -75,9 +83,14 @@ class HandFollower:
         self._regions = Regions.none()
         self._rows = np.zeros(0, dtype=np.int64)
         self._last: CameraImage | None = None
+        self.work = PerceptionWork()
 
     def step(
-        self, image: CameraImage, config: Config, expected_px: FloatArray = _NOWHERE
+        self,
+        image: CameraImage,
+        config: Config,
+        expected_px: FloatArray = _NOWHERE,
+        budget: int | None = None,
     ) -> tuple[Landmarks, IntArray]:
         """Every hand of the next image; followed ones first, in the order of the last image.
 
@@ -88,6 +101,8 @@ class HandFollower:
             config: The perception group.
             expected_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows in which a raised
                 hand is likelier than elsewhere.
+            budget: Model runs, of the palm search and on followed hands, that the image may take;
+                the search shrinks for it, down to one place.
 
         Returns:
             The hands, and the row of each in the last image's; -1 for those newly found.
@@ -97,8 +112,13 @@ class HandFollower:
         self._last = image
         regions, rows = self._regions[: config.max_hands], self._rows[: config.max_hands]
         room = config.max_hands - len(regions)
-        searches = self._searches(image, regions, expected_px, config) if room > 0 else []
+        places = config.search_regions_per_frame
+        if budget is not None:
+            places = max(1, min(places, budget - len(regions)))
+        began_s = time.perf_counter()
+        searches = self._searches(image, regions, expected_px, config, places if room else 0)
         hands, palms = self._reader.read_beside(image.bgr, regions, searches)
+        searched_s = time.perf_counter()
         found = _regions_of(palms, config)
         found = drop_known(found, regions)[:room]
         if len(found):
@@ -107,6 +127,14 @@ class HandFollower:
             rows = np.concatenate([rows, np.full(len(found), -1)])
         keep = np.flatnonzero(hands.score >= config.tracking_confidence)
         keep = keep[first_of_each_hand(hands[keep])]
+        ended_s = time.perf_counter()
+        self.work = PerceptionWork(
+            len(searches),
+            len(regions) + len(found),
+            searched_s - began_s,
+            ended_s - searched_s,
+            ended_s - began_s,
+        )
         hands, rows = hands[keep], rows[keep]
         self._follow(hands, config)
         return hands, rows
@@ -120,17 +148,22 @@ class HandFollower:
         self._last = None
 
     def _searches(
-        self, image: CameraImage, known: Regions, expected_px: FloatArray, config: Config
+        self,
+        image: CameraImage,
+        known: Regions,
+        expected_px: FloatArray,
+        config: Config,
+        count: int,
     ) -> list[Callable[[], Palms]]:
         """The palm searches of this image, to be called beside each other."""
+        if count == 0:
+            return []
         size = (image.width, image.height)
         moved_px = self._movement.boxes(image.bgr)
         whole = np.array([0, 0, *size])
         if self._plan is None:
             self._plan = SearchPlan(size)
-        windows = self._plan.choose(
-            config.search_regions_per_frame, _without(expected_px, known), moved_px
-        )
+        windows = self._plan.choose(count, _without(expected_px, known), moved_px)
         confidence, shrink = config.detection_confidence, config.downscale_factor
         return [
             partial(self._whole.find, image.bgr, confidence, shrink=shrink)

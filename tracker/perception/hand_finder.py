@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands
+from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
 from tracker.perception.following import HandFollower
 from tracker.perception.landmarks import LandmarkReader
 from tracker.perception.models import ModelStore
@@ -37,6 +37,7 @@ class HandFinder:
         self._follower = self._open(config)
         self._memory = RaiseMemory()
         self._expected_px = _NOWHERE
+        self._budget: int | None = None
 
     def expect(self, boxes_px: FloatArray) -> None:
         """Look here first in the next image: where people are known to be.
@@ -47,6 +48,15 @@ class HandFinder:
         """
         self._expected_px = boxes_px
 
+    def set_budget(self, runs: int | None) -> None:
+        """How many model runs an image may take from now on; None is as configured."""
+        self._budget = runs
+
+    @property
+    def work(self) -> PerceptionWork:
+        """What the last image cost."""
+        return self._follower.work
+
     def find(self, image: CameraImage) -> Hands:
         """Every known hand of the image, and those that the places searched in it hold.
 
@@ -54,7 +64,7 @@ class HandFinder:
         are read from the full image, so that their accuracy does not depend on it.
         """
         expected_px, self._expected_px = self._expected_px, _NOWHERE
-        found, last_rows = self._follower.step(image, self._config, expected_px)
+        found, last_rows = self._follower.step(image, self._config, expected_px, self._budget)
         raised, measure = self._memory.judge(
             image.stamp_ns, found, last_rows, (image.width, image.height), self._config
         )

@@ -15,8 +15,8 @@ _NEVER_NS = np.iinfo(np.int64).max
 class RaiseMemory:
     """Judges the hands of one image after the other; the specification's rule needs no memory.
 
-    A hand goes up by `palm_raised_threshold` and a sure landmark score, and stays up while it
-    keeps to the lower `palm_lowered_threshold`: one threshold alone would flicker. What looks like
+    A hand goes up by `palm_raised_threshold`, upright and with a sure landmark score, and stays up
+    while it keeps to the milder bounds: single ones would flicker. What looks like
     a small raised hand for a frame is often none, so that a small one counts once it has been up
     for `small_hand_patience_s`.
     """
@@ -49,7 +49,7 @@ class RaiseMemory:
         if config.raise_rule == "image":
             self._up_since_ns = np.full(len(hands), _NEVER_NS)
             return rises, measure
-        lean_max_rad = np.radians(config.raised_lean_max_deg)
+        lean_max_rad = np.radians(config.lowered_lean_min_deg)
         stays, _ = palm_rule(points, config.palm_lowered_threshold, lean_max_rad)
         since_ns = np.append(self._up_since_ns, _NEVER_NS)[last_rows]  # row -1 has never been up
         is_sure = hands.score >= config.raised_score_min

@@ -22,13 +22,14 @@ TILE_SIDE = 0.5
 #: by one of them; people stand side by side, so that columns lie closer than rows. Six tiles
 #: instead of the fifteen that this makes of 640 x 480 lost a tenth of the hands.
 TILE_STEPS = (0.42, 0.5)
-#: How many times as fast as a tile's the need of a place grows.
+#: How many times as fast as a tile's the need of a place grows; where somebody is expected and
+#: something moved, an arm may have gone up.
 EXPECTED_WEIGHT, WHOLE_WEIGHT, MOVED_WEIGHT = 4.0, 4.0, 3.0
 #: Windows that overlap more than this are the same place; neighboring tiles overlap by 0.41.
 SAME_PLACE_OVERLAP = 0.5
 #: A place where nobody has looked yet needs it as much as one left alone for so many images. The
 #: limit keeps windows that wander, with a robot that turns, from starving the rest.
-NEW_AGE = 20
+NEW_AGE = 8
 
 
 class SearchPlan:
@@ -52,8 +53,8 @@ class SearchPlan:
             count: How many.
             expected_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows where raised hands
                 are expected; each is a place of its own.
-            moved_px: Shape (M, 4): boxes in which something moved; they draw the tiles that hold
-                their centers.
+            moved_px: Shape (M, 4): boxes in which something moved; they draw attention to the
+                places that hold their centers.
 
         Returns:
             Shape (K, 4): windows, the neediest first; K is `count`, or all places if these are
@@ -64,8 +65,8 @@ class SearchPlan:
             self._lately.popleft()
         tiles = len(self._rotation)
         places = np.concatenate([self._rotation, clip_boxes(expected_px, self._size)])
-        weight = np.full(len(places), EXPECTED_WEIGHT)
-        weight[:tiles] = np.where(_holds_center(self._rotation, moved_px), MOVED_WEIGHT, 1.0)
+        weight = np.where(_holds_center(places, moved_px), MOVED_WEIGHT, 1.0)
+        weight[tiles:] *= EXPECTED_WEIGHT
         weight[0] = WHOLE_WEIGHT
         chosen: list[int] = []
         for _ in range(min(count, len(places))):

@@ -171,6 +171,14 @@ def test_parameters_reach_the_search():
     assert world.searches == [(0.7, None, 3), (0.7, (0, 0, 240, 240), 1)]
 
 
+def test_a_budget_shrinks_the_search_but_leaves_one_place_and_all_hands():
+    world = World((100, 100), (300, 100))
+    follower, config = follower_of(world), Config(search_regions_per_frame=4)
+    for budget, places, hands in [(None, 4, 2), (5, 3, 2), (2, 1, 2)]:
+        assert len(follower.step(image(), config, np.zeros((0, 4)), budget)) == 2
+        assert (follower.work.places, follower.work.hands) == (places, hands)
+
+
 def test_an_expected_place_is_searched_soon():
     world = World()
     follower, config = follower_of(world), Config(search_regions_per_frame=2)
