@@ -18,18 +18,21 @@ from tracker.perception.regions import box_overlap
 #: A tile's side, in short sides of the picture: at 640 x 480 a tile of 240 px, in which a hand at
 #: three meters is 28 px long.
 TILE_SIDE = 0.5
+#: The same for hands at four meters, which only stand around the horizon: the tiles' side, and
+#: where their rows begin, in heights of the picture (a camera that is about level).
+FAR_TILE_SIDE, FAR_TILE_TOPS = 1 / 3, (1 / 6, 1 / 3)
 #: The most that neighboring tiles are apart, in their sides. A hand in the overlap is seen whole
 #: by one of them; people stand side by side, so that columns lie closer than rows. Six tiles
 #: instead of the fifteen that this makes of 640 x 480 lost a tenth of the hands.
 TILE_STEPS = (0.42, 0.5)
 #: How many times as fast as a tile's the need of a place grows; where somebody is expected and
 #: something moved, an arm may have gone up.
-EXPECTED_WEIGHT, WHOLE_WEIGHT, MOVED_WEIGHT = 4.0, 4.0, 3.0
+EXPECTED_WEIGHT, WHOLE_WEIGHT, MOVED_WEIGHT = 10.0, 5.0, 2.0
 #: Windows that overlap more than this are the same place; neighboring tiles overlap by 0.41.
 SAME_PLACE_OVERLAP = 0.5
-#: A place where nobody has looked yet needs it as much as one left alone for so many images. The
-#: limit keeps windows that wander, with a robot that turns, from starving the rest.
-NEW_AGE = 8
+#: So many images are remembered for expected places. Older ones and those where nobody has looked
+#: yet need it alike: windows that wander, with a robot that turns, must not starve the rest.
+NEW_AGE = 12
 
 
 class SearchPlan:
@@ -43,7 +46,8 @@ class SearchPlan:
         self._size = image_size
         self._rotation = rotation_windows(*image_size)
         self._turn = 0
-        self._rotation_turn = np.full(len(self._rotation), -NEW_AGE)
+        # As if the rotation had been going on: ages that are all alike would come due all at once.
+        self._rotation_turn = np.arange(-len(self._rotation), 0)
         self._lately: deque[tuple[int, FloatArray]] = deque()
 
     def choose(self, count: int, expected_px: FloatArray, moved_px: FloatArray) -> IntArray:
@@ -93,20 +97,34 @@ class SearchPlan:
 
 
 def rotation_windows(width: int, height: int) -> FloatArray:
-    """The whole picture, then the tiles that cover it, row by row.
+    """The whole picture, the tiles that cover it row by row, and smaller ones around the horizon.
 
     Returns:
-        Shape (R, 4): x_min, y_min, x_max, y_max; R is 16 for 640 x 480.
+        Shape (R, 4): x_min, y_min, x_max, y_max; R is 1 + 15 + 18 for 640 x 480.
     """
     whole = [0.0, 0.0, float(width), float(height)]
-    side = TILE_SIDE * min(width, height)
-    x, y = (
-        np.linspace(0.0, size - side, 1 + int(np.ceil((size - side) / (step * side))))
-        for size, step in zip((width, height), TILE_STEPS, strict=True)
+    side, far_side = (share * min(width, height) for share in (TILE_SIDE, FAR_TILE_SIDE))
+    column_step, row_step = TILE_STEPS
+    tops = _spread(height, side, row_step)
+    far_tops = height * np.array(FAR_TILE_TOPS)
+    return np.concatenate(
+        [
+            [whole],
+            _tiles(_spread(width, side, column_step), tops, side),
+            _tiles(_spread(width, far_side, column_step), far_tops, far_side),
+        ]
     )
-    left, top = (grid.ravel() for grid in np.meshgrid(x, y))
-    tiles = np.stack([left, top, left + side, top + side], axis=-1)
-    return np.concatenate([[whole], tiles])
+
+
+def _spread(size_px: float, side_px: float, step: float) -> FloatArray:
+    """Where tiles begin that cover a length and lie no farther apart than `step` sides."""
+    count = 1 + int(np.ceil((size_px - side_px) / (step * side_px)))
+    return np.linspace(0.0, size_px - side_px, count)
+
+
+def _tiles(lefts: FloatArray, tops: FloatArray, side_px: float) -> FloatArray:
+    left, top = (grid.ravel() for grid in np.meshgrid(lefts, tops))
+    return np.stack([left, top, left + side_px, top + side_px], axis=-1)
 
 
 def clip_boxes(boxes_px: FloatArray, image_size: tuple[int, int]) -> FloatArray:

@@ -9,11 +9,11 @@ PERIOD_NS = 100_000_000
 CONFIG = Config(small_hand_patience_s=0.3)
 
 
-def hand(rise_palms, palm_px=60.0, score=0.95):
-    """One hand that points straight up; its middle finger's tip so many palms above the wrist."""
+def hand(rise_palms, palm_px=60.0, score=0.95, aside_palms=0.0):
+    """One hand, its middle finger's tip so many palms above and beside the wrist."""
     points = np.zeros((1, 21, 2))
     points[0, 9, 1] = -palm_px
-    points[0, 12, 1] = -rise_palms * palm_px
+    points[0, 12] = aside_palms * palm_px, -rise_palms * palm_px
     return Landmarks(points + 200.0, np.array([score]), np.array([0.5]))
 
 
@@ -38,6 +38,12 @@ def test_a_hand_goes_up_at_one_threshold_and_down_at_a_lower_one():
         False,
         True,
     ]
+
+
+def test_a_hand_that_leans_does_not_go_up_but_stays_up_until_it_leans_farther():
+    upright, leaning, falling = hand(1.8), hand(1.5, aside_palms=1.3), hand(1.2, aside_palms=1.6)
+    # 41 and 53 degrees.
+    assert verdicts([leaning, upright, leaning, falling]) == [False, True, True, False]
 
 
 def test_an_unsure_hand_does_not_go_up_but_stays_up():

@@ -22,8 +22,12 @@ def all_places(width, height):
     }
 
 
-def test_a_vga_picture_has_the_whole_and_fifteen_tiles():
+def test_a_vga_picture_has_the_whole_fifteen_tiles_and_eighteen_for_far_hands():
     windows = rotation_windows(*SIZE)
+    far, windows = windows[16:], windows[:16]
+    assert len(far) == 18
+    assert sorted(set(far[:, 1])) == [80, 160]
+    np.testing.assert_allclose(far[:, 2:] - far[:, :2], 160)
     assert windows[0].tolist() == [0, 0, 640, 480]
     assert sorted(set(windows[1:, 0])) == [0, 100, 200, 300, 400]
     assert sorted(set(windows[1:, 1])) == [0, 120, 240]
@@ -34,6 +38,7 @@ def test_a_vga_picture_has_the_whole_and_fifteen_tiles():
 def test_tiles_of_any_picture_cover_every_part_and_lie_close(size):
     windows = rotation_windows(*size)[1:]
     side = min(size) / 2
+    windows = windows[np.isclose(windows[:, 2] - windows[:, 0], side)]
     np.testing.assert_allclose(windows[:, 2:] - windows[:, :2], side)
     assert windows.min() == 0
     np.testing.assert_allclose(windows.max(axis=0)[2:], size)
@@ -42,7 +47,7 @@ def test_tiles_of_any_picture_cover_every_part_and_lie_close(size):
 
 
 def test_a_picture_at_rest_is_searched_all_over_and_the_whole_most_often():
-    seen = [window for frame in choices(40) for window in frame]
+    seen = [window for frame in choices(60) for window in frame]
     assert seen[0] == (0, 0, 640, 480)
     assert set(seen) == all_places(*SIZE)
     assert seen.count((0, 0, 640, 480)) >= 7
@@ -52,7 +57,7 @@ def test_a_picture_at_rest_is_searched_all_over_and_the_whole_most_often():
 def test_no_place_waits_longer_than_a_bound_whatever_is_expected_and_moves(count):
     rng = np.random.default_rng(4)
     plan, last, longest = SearchPlan(SIZE), {place: 0 for place in all_places(*SIZE)}, 0
-    for frame in range(600):
+    for frame in range(1000):
         # A robot that turns: six people and as many movements are somewhere else each time.
         corner = rng.uniform(0, 400, (6, 2))
         boxes = np.concatenate([corner, corner + rng.uniform(60, 240, (6, 1))], axis=1)
@@ -60,8 +65,9 @@ def test_no_place_waits_longer_than_a_bound_whatever_is_expected_and_moves(count
             if tuple(window) in last:
                 last[tuple(window)] = frame
         longest = max(longest, *(frame - then for then in last.values()))
-    # New places with movement need 8 * 4 * 3 = 96 at most: a tile that waits longer comes first.
-    assert longest <= 96 + 16 / count
+    # An expected place with movement needs 12 * 10 * 2 = 240 at most: a tile that waits longer
+    # comes first.
+    assert longest <= 240 + 34 / count
 
 
 def test_a_few_expected_places_come_every_few_frames_and_the_rest_still():
@@ -70,28 +76,29 @@ def test_a_few_expected_places_come_every_few_frames_and_the_rest_still():
     for place in people.astype(int).tolist():
         turns = np.flatnonzero([window == tuple(place) for window in seen])
         assert turns[0] <= 2
-        assert np.diff(turns).max() <= 12
+        assert np.diff(turns).max() <= 8
     assert all_places(*SIZE) <= set(seen)
 
 
 def test_tiles_where_something_moved_come_before_the_rest():
     plan = SearchPlan(SIZE)
-    choices(40, plan=plan)
-    moved = np.array([[500.0, 300, 520, 330]])
-    seen = [frame[0] for frame in choices(9, moved=moved, plan=plan)]
-    assert {(400, 240, 640, 480), (400, 120, 640, 360), (300, 240, 540, 480)} <= set(seen)
+    choices(60, plan=plan)
+    moved = np.array([[500.0, 330, 520, 350]])
+    seen = [frame[0] for frame in choices(200, moved=moved, plan=plan)]
+    for holds in [(400, 240, 640, 480), (400, 120, 640, 360), (300, 240, 540, 480)]:
+        assert seen.count(holds) >= 1.7 * seen.count((0, 0, 240, 240)) > 0
 
 
-def test_a_person_in_whose_window_something_moved_comes_first():
+def test_a_person_in_whose_window_something_moved_comes_soon():
     people = np.array([[60.0 * n, 50, 60.0 * n + 70, 120] for n in range(8)])
     plan = SearchPlan(SIZE)
-    choices(40, expected=people, plan=plan)
+    choices(60, expected=people, plan=plan)
     arm = np.array([[325.0, 60, 345, 90]])
-    for _ in range(5):
+    for _ in range(8):
         (first,) = plan.choose(1, people, arm).tolist()
         if first == people[5].tolist():
             return
-    pytest.fail("the moving arm was not looked at within five frames")
+    pytest.fail("the moving arm was not looked at within eight frames")
 
 
 def test_places_of_one_frame_differ():
@@ -100,7 +107,7 @@ def test_places_of_one_frame_differ():
 
 
 def test_there_are_no_more_choices_than_places():
-    assert len(choices(1, count=64)[0]) == 16
+    assert len(choices(1, count=64)[0]) == 34
 
 
 def test_the_same_calls_make_the_same_choices():

@@ -58,6 +58,15 @@ def test_ranging_spec_follows_the_ray_of_a_camera_beside_the_laser(cast):
     assert found.values[0] == pytest.approx([0.0, 1.7], abs=0.03)
 
 
+def test_somebody_who_passes_far_in_front_of_a_hand_does_not_own_it(cast, legs):
+    scan = cast(legs(2.0, 0.1))
+    found = measure_people(
+        hands_toward((4.5, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config(scan_sustains=False)
+    )
+    assert np.isnan(found.values[0, 1])
+    assert found.values[0, 0] == pytest.approx(0.0, abs=1e-9)
+
+
 def test_of_two_people_at_the_ray_the_one_as_near_as_the_hand_is_large(cast, legs):
     scan = cast(legs(1.2, 0.25) + legs(3.0, -0.1))
     for point, owner in [((1.2, 0.0), (1.2, 0.25)), ((3.0, 0.0), (3.0, -0.1))]:
