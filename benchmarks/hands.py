@@ -118,12 +118,14 @@ def drawn_hands(count: int) -> Callable[[int], np.ndarray]:
 
 def measure(hands: int, frames: int, python: str) -> dict[str, np.ndarray]:
     """Seconds of each frame of each contender, in turn; ends where they find other hands."""
-    picture, mediapipe = drawn_hands(hands), MediaPipe(python, hands)
+    picture, peer = drawn_hands(hands), None
     steps: dict[str, Step] = {
-        "mediapipe": mediapipe.step,
         "followed": product(max_hands=hands),
         "searching": product(max_hands=hands + 4),
     }
+    if subprocess.run([python, "-c", "import mediapipe"], capture_output=True).returncode == 0:
+        peer = MediaPipe(python, hands)
+        steps = {"mediapipe": peer.step, **steps}
     spent: dict[str, list[float]] = {name: [] for name in steps}
     counts: dict[str, set[int]] = {name: set() for name in steps}
     for frame in range(-WARM_UP, frames):
@@ -133,7 +135,8 @@ def measure(hands: int, frames: int, python: str) -> dict[str, np.ndarray]:
             if frame >= 0:
                 spent[name].append(seconds)
                 counts[name].add(found)
-    mediapipe.close()
+    if peer is not None:
+        peer.close()
     for name, found in counts.items():
         if found != {hands}:
             raise SystemExit(f"{name} found {sorted(found)} of {hands} hands: nothing to compare")
@@ -158,14 +161,14 @@ def main() -> None:
         table.add_column(column, justify="right")
     for hands in (1, 4):
         spent = measure(hands, words.frames, words.mediapipe_python)
-        peer = np.median(spent["mediapipe"])
+        peer = np.median(spent["mediapipe"]) if "mediapipe" in spent else np.nan
         for name, times in spent.items():
             table.add_row(
                 str(hands),
                 name,
                 f"{1e3 * np.median(times):.1f}",
                 f"{1e3 * np.percentile(times, 99):.1f}",
-                f"{np.median(times) / peer:.2f}",
+                "-" if np.isnan(peer) else f"{np.median(times) / peer:.2f}",
             )
     Console().print(table)
 
