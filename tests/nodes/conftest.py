@@ -38,8 +38,8 @@ class OneRaisedHand:
     def find(self, image):
         self.may_run.wait(10.0)
         self.stamps_ns.append(image.stamp_ns)
-        landmarks = np.full((1, 21, 2), (320.0, 240.0))  # straight ahead
-        landmarks[:, 12, 1] -= 60.0
+        landmarks = np.full((1, 21, 2), (32.0, 24.0))  # straight ahead
+        landmarks[:, 12, 1] -= 6.0
         one = np.ones(1)
         return Hands(landmarks, one, one, one.astype(bool), one)
 
@@ -60,7 +60,7 @@ class Wire:
         self.steady_ns = 0
         self.detector = OneRaisedHand()
         self.core = NodeCore(
-            config,
+            config.replace(camera_fx=46.0, camera_fy=46.0, camera_cx=32.0, camera_cy=24.0),
             publish=lambda output, message: self.published.append((output, message)),
             has_subscribers=lambda output: output in self.listened,
             log=lambda level, text: self.logged.append((level, text)),
