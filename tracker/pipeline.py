@@ -134,10 +134,11 @@ class Pipeline:
 
         fixed_from_camera, is_located = self._locate_camera(image)
         scan, laser_pose = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
+        people = scan_people(scan, laser_pose, self.config)
         piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
         if piecewise is not None and is_located:
-            people = self._known_people(scan, laser_pose)
-            piecewise.expect(expected_hands(people, self.camera, fixed_from_camera))
+            known_xy_m = np.concatenate([self.tracker.positions_m, people.xy_m])
+            piecewise.expect(expected_hands(known_xy_m, self.camera, fixed_from_camera))
         hands = self.detector.find(image)
         measurements = measure_people(
             hands,
@@ -148,6 +149,7 @@ class Pipeline:
             self.config,
             sustain=scan is not self._sustained_by,
             background=self._background if self.config.background_after_s > 0.0 else None,
+            people=people,
         )
         self._sustained_by = scan
         if self.config.appearance_weight and hands.raised.any():
@@ -269,13 +271,6 @@ class Pipeline:
         return View.between(
             laser_pose, first_rad - half_beam_rad, last_rad + half_beam_rad, range_max_m
         )
-
-    def _known_people(self, scan: Scan | None, laser_pose: FloatArray | None) -> FloatArray:
-        """Shape (N, 2): customers, then what could be people in the scan, in the fixed frame."""
-        places = [self.tracker.positions_m]
-        if scan is not None and laser_pose is not None:
-            places.append(scan_people(scan, laser_pose, self.config).xy_m)
-        return np.concatenate(places)
 
     def _nearest_scan(
         self, stamp_ns: int, fixed_from_camera: RigidTransform, is_located: bool

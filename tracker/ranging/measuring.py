@@ -29,6 +29,7 @@ def measure_people(
     *,
     sustain: bool = True,
     background: Background | None = None,
+    people: PersonClusters | None = None,
 ) -> Measurements:
     """Turn one image's hands and the scan beside it into measurements in the fixed frame.
 
@@ -43,6 +44,7 @@ def measure_people(
             several images; it speaks for itself only once.
         background: What has been learnt of the room so far, and learns from this scan; None takes
             whatever is person-sized for a person.
+        people: From `scan_people`, where that has been asked already.
 
     Returns:
         First one row for each hand, then the clusters that no raised hand has claimed and that are
@@ -51,8 +53,7 @@ def measure_people(
     rays = hand_rays(hands, camera, fixed_from_camera, config)
     pair = pair_hands(hands)
     pair = np.where(pair >= 0, pair + _PAIR_OFFSET, -1)
-    people = PersonClusters.none()
-    if scan is not None and laser_pose is not None:
+    if people is None:
         people = scan_people(scan, laser_pose, config)
     is_background = np.zeros(len(people), dtype=bool)
     if background is not None and scan is not None and laser_pose is not None:
@@ -95,8 +96,12 @@ def measure_people(
     return Measurements.concatenate(from_hands, from_scan)
 
 
-def scan_people(scan: Scan, laser_pose: FloatArray, config: Config) -> PersonClusters:
-    """`find_people` by the configured lengths."""
+def scan_people(
+    scan: Scan | None, laser_pose: FloatArray | None, config: Config
+) -> PersonClusters:
+    """`find_people` by the configured lengths; nobody where there is no scan."""
+    if scan is None or laser_pose is None:
+        return PersonClusters.none()
     return find_people(
         scan,
         laser_pose,
