@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import cv2
 import numpy as np
 
-from tracker.containers import BoolArray, ImageArray
+from tracker.containers import BoolArray, FloatArray, ImageArray
 from tracker.geometry import normalize_angle
+from tracker.simulation.arm import raised_hand_landmarks
 from tracker.simulation.canvas import Sprite
-from tracker.simulation.figure import Look, paint_figure, raised_hand_landmarks
+from tracker.simulation.figure import paint_activity, paint_figure
 from tracker.simulation.furniture import TablePainter
+from tracker.simulation.look import Look
 from tracker.simulation.motion import People
 from tracker.simulation.projection import NEAR_M, Viewpoint
 from tracker.simulation.room import RoomPainter, bgr
@@ -32,14 +35,19 @@ class CameraView:
     Args:
         scene: What is there.
         rng: Pixel noise.
+        sharp_from_m: Figures are painted as finely as they are seen from here; nearer ones are
+            enlarged. Painting takes a time inversely proportional to its square.
     """
 
-    def __init__(self, scene: Scene, rng: np.random.Generator) -> None:
+    def __init__(
+        self, scene: Scene, rng: np.random.Generator, sharp_from_m: float = _SHARP_FROM_M
+    ) -> None:
         self._scene = scene
+        self._px_per_m = scene.camera.fx / sharp_from_m
         self._room = RoomPainter(scene)
-        self._tables = [TablePainter(table) for table in scene.tables]
+        self._tables = [TablePainter(table, scene.camera.exposure) for table in scene.tables]
         self._looks = [look_of(person) for person in scene.people]
-        self._figures: dict[tuple[Look, bool], list[_Pyramid]] = {}
+        self._figures: dict[tuple[Look, bool, str], list[_Pyramid]] = {}
         self._rng = rng
         camera = scene.camera
         # Fresh noise for each pixel of each picture takes longer than all the painting; a window
@@ -53,9 +61,14 @@ class CameraView:
     def render(self, view: Viewpoint, people: People) -> ImageArray:
         """One picture, shape (height, width, 3), BGR."""
         frame = self._room.paint(view)
+        brightness = view.camera.exposure * self._scene.backlight
+        if brightness != 1.0:
+            cv2.convertScaleAbs(frame, dst=frame, alpha=brightness)
         for _, paint in sorted(self._things(frame, view, people), key=lambda thing: -thing[0]):
             paint()
         camera = view.camera
+        if camera.motion_px > 1:
+            cv2.blur(frame, (camera.motion_px, 1), dst=frame)
         if camera.blur_px > 0.0:
             cv2.GaussianBlur(frame, (0, 0), camera.blur_px, dst=frame)
         if camera.noise_std > 0.0:
@@ -78,35 +91,47 @@ class CameraView:
             if ahead_left[0] < max(NEAR_M, 0.3):
                 continue
             behind = is_from_behind(view, people, row)
+            doing = None if behind else people.doing[row]  # the trunk hides what hands do
             step = int(people.raised[row] * (len(RAISED_STEPS) - 1))
+            what, number = doing or ("", step)
             anchor = view.pixels(ahead_left, 0.0)
-            figure = self._figure(look, behind)[step]
+            figure = self._figure(look, behind, what)[number]
             px_per_m = view.camera.fx / ahead_left[0]
             paint = partial(figure.lay_over, frame, (anchor[0], anchor[1]), px_per_m)
             things.append((float(ahead_left[0]), paint))
         return things
 
-    def _figure(self, look: Look, from_behind: bool) -> list[_Pyramid]:
-        key = (look, from_behind)
+    def _figure(self, look: Look, from_behind: bool, what: str) -> list[_Pyramid]:
+        key = (look, from_behind, what)
         if key not in self._figures:
-            px_per_m = self._scene.camera.fx / _SHARP_FROM_M
-            sprites = paint_figure(look, RAISED_STEPS, px_per_m=px_per_m, from_behind=from_behind)
-            self._figures[key] = [_Pyramid(sprite) for sprite in sprites]
+            sprites = (
+                paint_activity(look, what, px_per_m=self._px_per_m)
+                if what
+                else paint_figure(
+                    look, RAISED_STEPS, px_per_m=self._px_per_m, from_behind=from_behind
+                )
+            )
+            exposure = self._scene.camera.exposure
+            self._figures[key] = [_Pyramid(_exposed(sprite, exposure)) for sprite in sprites]
         return self._figures[key]
 
 
 def hands_in_view(scene: Scene, view: Viewpoint, people: People) -> BoolArray:
     """Shape (P,): each one's raised hand, wrist to fingertips, would fall into the picture."""
     answer = np.zeros(len(scene.people), dtype=bool)
-    for row, person in enumerate(scene.people):
-        ahead_left = view.forward_left(people.xy_m[row])
-        if ahead_left[0] < max(NEAR_M, 0.3):
-            continue
-        behind = is_from_behind(view, people, row)
-        hand = raised_hand_landmarks(look_of(person), from_behind=behind)
-        places = np.stack([np.full(len(hand), ahead_left[0]), ahead_left[1] - hand[:, 0]], axis=-1)
-        answer[row] = view.is_in_picture(view.pixels(places, hand[:, 1]))
+    for row in range(len(scene.people)):
+        if view.forward_left(people.xy_m[row])[0] >= max(NEAR_M, 0.3):
+            answer[row] = view.is_in_picture(raised_hand_pixels(scene, view, people, row))
     return answer
+
+
+def raised_hand_pixels(scene: Scene, view: Viewpoint, people: People, row: int) -> FloatArray:
+    """Shape (21, 2): where a person's landmarks are in the picture once the hand is fully up."""
+    ahead, left = view.forward_left(people.xy_m[row])
+    behind = is_from_behind(view, people, row)
+    hand = raised_hand_landmarks(look_of(scene.people[row]), from_behind=behind)
+    places = np.stack([np.full(len(hand), ahead), left - hand[:, 0]], axis=-1)
+    return view.pixels(places, hand[:, 1])
 
 
 def is_from_behind(view: Viewpoint, people: People, row: int) -> bool:
@@ -128,7 +153,22 @@ def look_of(person: Person) -> Look:
         hair_style=look.hair_style,
         shirt=bgr(look.shirt),
         trousers=bgr(look.trousers),
+        sleeve=look.sleeve,
+        build=look.build,
+        hand_m=look.hand_m,
+        spread=look.spread,
+        raise_style=person.raise_style,
+        lean_deg=person.lean_deg,
     )
+
+
+def _exposed(sprite: Sprite, exposure: float) -> Sprite:
+    if exposure == 1.0:
+        return sprite
+    bgra = sprite.bgra.copy()
+    color = bgra[..., :3] * np.float32(exposure)
+    bgra[..., :3] = np.minimum(color, bgra[..., 3:])  # no more than white, times the opacity
+    return replace(sprite, bgra=bgra)
 
 
 class _Pyramid:

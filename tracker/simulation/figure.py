@@ -6,101 +6,14 @@ floor, in meters, x = 0 at the body's center.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from tracker.containers import FloatArray
-from tracker.simulation.canvas import Canvas, Color, Sprite
-from tracker.simulation.hand_shape import hand_landmarks, paint_hand
-
-_STATURE_M = 1.72  # of the figure that the lengths below draw; a guess at a grown person
-_HIP_M = 0.90
-_UPPER_ARM_M, _FOREARM_M = 0.27, 0.24
-
-
-@dataclass(frozen=True, slots=True)
-class Look:
-    """What stays with a person.
-
-    Attributes:
-        stature_m: Height when standing.
-        seat_m: Height of the seat; None for somebody who stands.
-        right_handed: Raises the right hand.
-        skin: Blue, green, red.
-        hair: Blue, green, red.
-        hair_style: `short`, `long`, `bun` or `bald`.
-        shirt: Blue, green, red.
-        trousers: Blue, green, red.
-    """
-
-    stature_m: float = _STATURE_M
-    seat_m: float | None = None
-    right_handed: bool = True
-    skin: Color = (120, 160, 214)
-    hair: Color = (40, 52, 74)
-    hair_style: str = "short"
-    shirt: Color = (150, 110, 60)
-    trousers: Color = (80, 64, 56)
-
-    @property
-    def scale(self) -> float:
-        """Of every length but the hand's, which is the same for all."""
-        return self.stature_m / _STATURE_M
-
-    @property
-    def sunk_m(self) -> float:
-        """How much lower the trunk is than when standing."""
-        return 0.0 if self.seat_m is None else self.scale * _HIP_M - self.seat_m - 0.06
-
-
-@dataclass(frozen=True, slots=True)
-class Arm:
-    """Where a figure's arm runs, on its sheet.
-
-    Attributes:
-        shoulder_m: x and z.
-        elbow_m: x and z.
-        wrist_m: x and z.
-        hand_rad: Direction of the fingers, from straight up toward the right.
-    """
-
-    shoulder_m: tuple[float, float]
-    elbow_m: tuple[float, float]
-    wrist_m: tuple[float, float]
-    hand_rad: float
-
-
-def bend_arm(look: Look, raised: float, side: float) -> Arm:
-    """The arm's joints.
-
-    Args:
-        look: Whose arm.
-        raised: 0 hangs (or rests on the lap), 1 is up beside the head.
-        side: -1 for the arm at the sheet's left, 1 for the one at its right.
-    """
-    low = (8.0, 2.0, 0.0) if look.seat_m is None else (12.0, -42.0, -60.0)
-    high = (78.0, 192.0, 178.0)  # upper arm, forearm, hand; degrees from down, outward
-    upper, fore, hand = (np.radians(a + (b - a) * raised) for a, b in zip(low, high, strict=True))
-    scale = look.scale
-    x, z = 0.175 * scale, 1.385 * scale - look.sunk_m
-    elbow_x = x + _UPPER_ARM_M * scale * np.sin(upper)
-    elbow_z = z - _UPPER_ARM_M * scale * np.cos(upper)
-    wrist_x = elbow_x + _FOREARM_M * scale * np.sin(fore)
-    wrist_z = elbow_z - _FOREARM_M * scale * np.cos(fore)
-    return Arm(
-        (side * x, z),
-        (side * float(elbow_x), float(elbow_z)),
-        (side * float(wrist_x), float(wrist_z)),
-        float(side * (np.pi - hand)),
-    )
-
-
-def raised_hand_landmarks(look: Look, *, from_behind: bool = False) -> FloatArray:
-    """Landmarks of the hand that is fully up, shape (21, 2): x_m and z_m on the sheet."""
-    side = _raising_side(look, from_behind)
-    arm = bend_arm(look, 1.0, side)
-    return hand_landmarks(arm.wrist_m, arm.hand_rad, thumb_right=side < 0)
+from tracker.simulation.activities import ACTIVITIES, Gesture
+from tracker.simulation.arm import Arm, bend_arm, raising_side, reach, top_m
+from tracker.simulation.canvas import Canvas, Sprite
+from tracker.simulation.grip import paint_grip
+from tracker.simulation.hand_shape import paint_hand
+from tracker.simulation.look import Look
 
 
 def paint_figure(
@@ -114,18 +27,8 @@ def paint_figure(
         px_per_m: Resolution.
         from_behind: Hair instead of a face, the backs of the hands.
     """
-    height = max(look.stature_m - look.sunk_m + 0.1, 1.85 * look.scale - look.sunk_m + 0.1)
-    body = Canvas(0.72 * look.scale + 0.05, height, px_per_m)
-    side = _raising_side(look, from_behind)
-    _paint_legs(body, look)
-    if look.seat_m is None:
-        _paint_arm(body, look, bend_arm(look, 0.0, -side), -side, from_behind)
-    if not from_behind:
-        _paint_hair_behind(body, look)
-    _paint_trunk(body, look)
-    if look.seat_m is not None:
-        _paint_arm(body, look, bend_arm(look, 0.0, -side), -side, from_behind)
-    _paint_head(body, look, from_behind)
+    side = raising_side(look, from_behind=from_behind)
+    body = _paint_body(look, px_per_m, from_behind, resting=(-side,))
     sprites = []
     for raised in raised_steps:
         canvas = body.copy()
@@ -134,8 +37,45 @@ def paint_figure(
     return sprites
 
 
-def _raising_side(look: Look, from_behind: bool) -> float:
-    return -1.0 if look.right_handed != from_behind else 1.0
+def paint_activity(look: Look, what: str, *, px_per_m: float) -> list[Sprite]:
+    """The figure busy with something else than calling, from the front.
+
+    Args:
+        look: Who it is.
+        what: One of `ACTIVITIES`; there is a sprite for each of its moments.
+        px_per_m: Resolution.
+    """
+    side = raising_side(look, from_behind=False)
+    moments = ACTIVITIES[what]
+    both = any(moment.other is not None for moment in moments)
+    body = _paint_body(look, px_per_m, False, resting=() if both else (-side,))
+    sprites = []
+    for moment in moments:
+        canvas = body.copy()
+        if moment.other is not None:
+            _paint_gesture(canvas, look, moment.other, -side)
+        _paint_gesture(canvas, look, moment.hand, side)
+        sprites.append(canvas.sprite())
+    return sprites
+
+
+def _paint_body(
+    look: Look, px_per_m: float, from_behind: bool, resting: tuple[float, ...]
+) -> Canvas:
+    """All but the arms that do something; `resting` are the sides of those that do nothing."""
+    body = Canvas(0.72 * look.scale + 0.05, top_m(look) + 0.1, px_per_m)
+    _paint_legs(body, look)
+    if look.seat_m is None:
+        for side in resting:
+            _paint_arm(body, look, bend_arm(look, 0.0, side), side, from_behind)
+    if not from_behind:
+        _paint_hair_behind(body, look)
+    _paint_trunk(body, look)
+    if look.seat_m is not None:
+        for side in resting:
+            _paint_arm(body, look, bend_arm(look, 0.0, side), side, from_behind)
+    _paint_head(body, look, from_behind)
+    return body
 
 
 def _paint_legs(canvas: Canvas, look: Look) -> None:
@@ -166,10 +106,10 @@ def _paint_legs(canvas: Canvas, look: Look) -> None:
 
 
 def _paint_trunk(canvas: Canvas, look: Look) -> None:
-    scale, sunk = look.scale, look.sunk_m
+    scale, sunk, build = look.scale, look.sunk_m, look.build
 
     def up(x: float, z: float, radius: float) -> tuple[float, float, float]:
-        return (x * scale, z * scale - sunk, radius * scale)
+        return (x * scale * build, z * scale - sunk, radius * scale)
 
     canvas.paint([[up(-0.09, 0.91, 0.085), up(0.09, 0.91, 0.085)]], look.trousers, 0.06)
     if look.seat_m is not None:
@@ -190,31 +130,59 @@ def _paint_trunk(canvas: Canvas, look: Look) -> None:
 
 
 def _paint_arm(canvas: Canvas, look: Look, arm: Arm, side: float, from_behind: bool) -> None:
-    scale, skin = look.scale, look.skin
-    middle = tuple((a + b) / 2 for a, b in zip(arm.shoulder_m, arm.elbow_m, strict=True))
-    canvas.paint(
-        [
-            [(*arm.shoulder_m, 0.042 * scale), (*arm.elbow_m, 0.037 * scale)],
-            [(*arm.elbow_m, 0.037 * scale), (*arm.wrist_m, 0.025)],
-        ],
-        skin,
-        0.035,
-    )
-    canvas.paint(
-        [[(*arm.shoulder_m, 0.060 * scale), (middle[0], middle[1], 0.056 * scale)]],
-        look.shirt,
-        0.05,
-    )
+    _paint_limb(canvas, look, arm)
     # Raised: palm toward the viewer and thumb toward the head. Hanging: the back and the nails.
     is_up = abs(arm.hand_rad) < np.pi / 2
     paint_hand(
         canvas,
         arm.wrist_m,
         arm.hand_rad,
-        skin,
+        look.skin,
         thumb_right=side < 0 if is_up else side > 0,
         palm_visible=is_up and not from_behind,
+        length_m=look.hand_m,
+        spread=look.spread,
     )
+
+
+def _paint_gesture(canvas: Canvas, look: Look, gesture: Gesture, side: float) -> None:
+    arm = reach(look, gesture.wrist_m, gesture.hand_deg, side)
+    _paint_limb(canvas, look, arm)
+    if gesture.holds is not None:
+        paint_grip(
+            canvas, arm.wrist_m, arm.hand_rad, look.skin,
+            thumb_right=side < 0, length_m=look.hand_m, holds=gesture.holds,
+        )  # fmt: skip
+        return
+    paint_hand(
+        canvas, arm.wrist_m, arm.hand_rad, look.skin,
+        thumb_right=(side < 0) == gesture.palm_visible, palm_visible=gesture.palm_visible,
+        length_m=look.hand_m, spread=gesture.spread,
+    )  # fmt: skip
+
+
+def _paint_limb(canvas: Canvas, look: Look, arm: Arm) -> None:
+    scale, skin = look.scale, look.skin
+    wide = scale * look.build
+    middle = tuple((a + b) / 2 for a, b in zip(arm.shoulder_m, arm.elbow_m, strict=True))
+    canvas.paint(
+        [
+            [(*arm.shoulder_m, 0.042 * wide), (*arm.elbow_m, 0.037 * wide)],
+            [(*arm.elbow_m, 0.037 * wide), (*arm.wrist_m, 0.025)],
+        ],
+        skin,
+        0.035,
+    )
+    if look.sleeve == "short":
+        cloth = [[(*arm.shoulder_m, 0.060 * wide), (middle[0], middle[1], 0.056 * wide)]]
+        canvas.paint(cloth, look.shirt, 0.05)
+    elif look.sleeve == "long":
+        cuff = tuple(0.12 * a + 0.88 * b for a, b in zip(arm.elbow_m, arm.wrist_m, strict=True))
+        cloth = [
+            [(*arm.shoulder_m, 0.058 * wide), (*arm.elbow_m, 0.048 * wide)],
+            [(*arm.elbow_m, 0.048 * wide), (cuff[0], cuff[1], 0.036)],
+        ]
+        canvas.paint(cloth, look.shirt, 0.05)
 
 
 def _paint_hair_behind(canvas: Canvas, look: Look) -> None:

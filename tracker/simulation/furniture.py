@@ -22,11 +22,12 @@ class TablePainter:
 
     Args:
         table: Which.
+        exposure: Brightness of its colors.
     """
 
-    def __init__(self, table: Table) -> None:
+    def __init__(self, table: Table, exposure: float = 1.0) -> None:
         self._height_m = table.height_m
-        color = np.array(bgr(table.color), np.float64)
+        color = np.array(bgr(table.color), np.float64) * exposure
         self._top, self._rim, self._dark = (tuple(color * light) for light in (1.0, 0.72, 0.55))
         self._posts = table_posts(table)
         half_size = np.array([table.length_m, table.width_m]) / 2
@@ -36,7 +37,7 @@ class TablePainter:
         seats = np.stack([np.cos(angles), np.sin(angles)], axis=-1) * (half_size - 0.17)
         circle = np.stack([np.cos(_RIM), np.sin(_RIM)], axis=-1)
         self._plates = [
-            (_in_map(table, seats[:, None] + radius * circle), color)
+            (_in_map(table, seats[:, None] + radius * circle), tuple(exposure * np.array(color)))
             for radius, color in _PLATE_RIMS
         ]
 

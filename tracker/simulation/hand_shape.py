@@ -26,7 +26,7 @@ LANDMARKS = np.array(
 _FINGERS = ((5, 6, 7, 8), (9, 10, 11, 12), (13, 14, 15, 16), (17, 18, 19, 20))
 _FINGER_RADII = (0.060, 0.053, 0.048, 0.042)
 _THUMB_RADII = (0.085, 0.070, 0.058, 0.046)
-_PALM: tuple[Disc, ...] = (
+PALM: tuple[Disc, ...] = (
     (0.0, 0.06, 0.12), (0.13, 0.14, 0.07), (0.13, 0.45, 0.075), (0.03, 0.48, 0.075),
     (-0.09, 0.46, 0.075), (-0.165, 0.40, 0.07), (-0.11, 0.14, 0.07),
 )  # fmt: skip
@@ -38,7 +38,12 @@ _CREASES = (
 
 
 def hand_landmarks(
-    wrist_m: tuple[float, float], direction_rad: float, *, thumb_right: bool
+    wrist_m: tuple[float, float],
+    direction_rad: float,
+    *,
+    thumb_right: bool,
+    length_m: float = HAND_LENGTH_M,
+    spread: float = 1.0,
 ) -> FloatArray:
     """Where a hand's landmarks are, shape (21, 2): x_m and z_m on the figure's sheet.
 
@@ -46,8 +51,10 @@ def hand_landmarks(
         wrist_m: Place of the wrist.
         direction_rad: Of the middle finger, from straight up toward the right.
         thumb_right: The thumb lies to the right when the fingers point up.
+        length_m: From the wrist to the middle finger's tip.
+        spread: Of the fingers: 1 is wide apart, 0 is closed.
     """
-    return _place(LANDMARKS, wrist_m, direction_rad, thumb_right)
+    return place(_spread_landmarks(spread), wrist_m, direction_rad, thumb_right, length_m)
 
 
 def paint_hand(
@@ -58,8 +65,10 @@ def paint_hand(
     *,
     thumb_right: bool,
     palm_visible: bool,
+    length_m: float = HAND_LENGTH_M,
+    spread: float = 1.0,
 ) -> None:
-    """Paint an open hand with its fingers spread.
+    """Paint an open hand.
 
     Args:
         canvas: Painted on.
@@ -68,33 +77,35 @@ def paint_hand(
         skin: Its color.
         thumb_right: The thumb lies to the right when the fingers point up.
         palm_visible: The palm's creases are seen; else the nails.
+        length_m: From the wrist to the middle finger's tip.
+        spread: Of the fingers: 1 is wide apart, 0 is closed.
     """
+    landmarks = _spread_landmarks(spread)
 
     def discs(points: FloatArray, radii: tuple[float, ...]) -> list[Disc]:
-        placed = _place(points, wrist_m, direction_rad, thumb_right)
+        placed = place(points, wrist_m, direction_rad, thumb_right, length_m)
         return [
-            (float(x), float(z), r * HAND_LENGTH_M)
-            for (x, z), r in zip(placed, radii, strict=True)
+            (float(x), float(z), r * length_m) for (x, z), r in zip(placed, radii, strict=True)
         ]
 
     def stroke(points: FloatArray, width: float, color: Color) -> None:
-        placed = _place(points, wrist_m, direction_rad, thumb_right)
-        canvas.line([(float(x), float(z)) for x, z in placed], color, width * HAND_LENGTH_M)
+        placed = place(points, wrist_m, direction_rad, thumb_right, length_m)
+        canvas.line([(float(x), float(z)) for x, z in placed], color, width * length_m)
 
     blue, green, red = skin
     dark = (int(blue * 0.62), int(green * 0.66), int(red * 0.76))
     nail = tuple(int(channel + 0.45 * (245 - channel)) for channel in skin)
-    chains = [(LANDMARKS[list(rows)], _FINGER_RADII) for rows in _FINGERS]
-    thumb = (LANDMARKS[1:5], _THUMB_RADII)
+    chains = [(landmarks[list(rows)], _FINGER_RADII) for rows in _FINGERS]
+    thumb = (landmarks[1:5], _THUMB_RADII)
     for points, radii in [*chains, thumb]:
         chain = discs(points, radii)
         hulls = [chain[row : row + 2] for row in range(len(chain) - 1)]
-        canvas.paint(hulls, skin, radii[2] * HAND_LENGTH_M)
-    palm = np.array(_PALM)
-    canvas.paint([discs(palm[:, :2], tuple(palm[:, 2]))], skin, 0.07 * HAND_LENGTH_M)
+        canvas.paint(hulls, skin, radii[2] * length_m)
+    palm = np.array(PALM)
+    canvas.paint([discs(palm[:, :2], tuple(palm[:, 2]))], skin, 0.07 * length_m)
     ball = discs(np.array([(0.07, 0.10), (0.15, 0.26)]), (0.07, 0.06))  # of the thumb
     if palm_visible:
-        canvas.paint([ball], skin, 0.06 * HAND_LENGTH_M, flat=0.4)
+        canvas.paint([ball], skin, 0.06 * length_m, flat=0.4)
         for crease in _CREASES:
             stroke(np.array(crease), 0.014, dark)
     for points, radii in [*chains, thumb]:
@@ -112,12 +123,31 @@ def paint_hand(
             canvas.paint([discs(ends, (0.024, 0.022))], (nail[0], nail[1], nail[2]), 0.002)
 
 
-def _place(
-    points: FloatArray, wrist_m: tuple[float, float], direction_rad: float, thumb_right: bool
+def place(
+    points: FloatArray,
+    wrist_m: tuple[float, float],
+    direction_rad: float,
+    thumb_right: bool,
+    length_m: float,
 ) -> FloatArray:
+    """Points of the hand's own axes (right and up, in hand lengths) on the sheet, in meters."""
     sign = 1.0 if thumb_right else -1.0
-    right, up = points[:, 0] * sign * HAND_LENGTH_M, points[:, 1] * HAND_LENGTH_M
+    right, up = points[:, 0] * sign * length_m, points[:, 1] * length_m
     cosine, sine = np.cos(direction_rad), np.sin(direction_rad)
     return np.stack(
         [wrist_m[0] + cosine * right + sine * up, wrist_m[1] - sine * right + cosine * up], axis=-1
     )
+
+
+def _spread_landmarks(spread: float) -> FloatArray:
+    """`LANDMARKS` with fingers and thumb turned about their roots, toward the middle finger."""
+    if spread == 1.0:
+        return LANDMARKS
+    landmarks: FloatArray = LANDMARKS.copy()
+    for root, *others in (*_FINGERS, (1, 2, 3, 4)):
+        chain = LANDMARKS[others] - LANDMARKS[root]
+        turn = (1.0 - spread) * np.arctan2(chain[-1, 0], chain[-1, 1])
+        turn *= 0.7 if root == 1 else 1.0  # a thumb stays somewhat apart
+        cosine, sine = np.cos(turn), np.sin(turn)
+        landmarks[others] = LANDMARKS[root] + chain @ np.array([[cosine, sine], [-sine, cosine]])
+    return landmarks

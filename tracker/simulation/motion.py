@@ -8,6 +8,7 @@ import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray
 from tracker.geometry import RigidTransform, normalize_angle
+from tracker.simulation.activities import moment_at
 from tracker.simulation.scene import ARM_MOTION_S, Person, Pose2, Scene
 
 _STRIDE_M = 1.3  # two steps of a walking grown-up; a guess
@@ -28,6 +29,8 @@ class People:
         raised: Shape (P,): how far the hand is up, 0 to 1.
         legs: Shape (P, 2, 3): x_m, y_m, radius_m of both legs in the map, as the scanner
             meets them.
+        doing: For each person the activity and which of its moments; None where the hand rests or
+            is on its way up or down.
     """
 
     id: IntArray
@@ -35,6 +38,7 @@ class People:
     facing_rad: FloatArray
     raised: FloatArray
     legs: FloatArray
+    doing: tuple[tuple[str, int] | None, ...]
 
     @property
     def hand_up(self) -> BoolArray:
@@ -82,7 +86,11 @@ def people_at(scene: Scene, time_s: float) -> People:
             place = middle + side * (_LEG_APART_M * left + swing * forward)
             legs[row, leg] = (*place, _LEG_RADIUS_M)
     ids = np.array([person.id for person in scene.people], dtype=np.int64)
-    return People(ids, xy, facing, raised, legs)
+    doing = tuple(
+        None if height > 0.0 else _doing(person, time_s)
+        for person, height in zip(scene.people, raised, strict=True)
+    )
+    return People(ids, xy, facing, raised, legs, doing)
 
 
 def _walk(person: Person, time_s: float, robot_xy: FloatArray) -> tuple[FloatArray, float, float]:
@@ -127,3 +135,10 @@ def _raised(person: Person, time_s: float) -> float:
         # Never quite 1 outside the span, so that the truth is the scene file to the nanosecond.
         height = max(height, min(1.0 - away_s / ARM_MOTION_S, 0.999))
     return height
+
+
+def _doing(person: Person, time_s: float) -> tuple[str, int] | None:
+    for each in person.activities:
+        if each.from_s <= time_s < each.until_s:
+            return each.what, moment_at(each.what, time_s - each.from_s)
+    return None

@@ -60,8 +60,16 @@ class Raise(_Part):
     until_s: float = Field(gt=0.0)
 
 
+class Activity(_Part):
+    """Something that hands do besides calling; a raise interrupts it."""
+
+    what: Literal["talk", "drink", "phone", "scratch", "rest", "wave_low"]
+    from_s: float = Field(0.0, ge=0.0)
+    until_s: float = Field(3600.0, gt=0.0)
+
+
 class PersonLook(_Part):
-    """Colors and build."""
+    """Colors, clothes and build."""
 
     stature_m: Stature = 1.72
     skin: Color = "#d6a078"
@@ -69,6 +77,10 @@ class PersonLook(_Part):
     hair_style: Literal["short", "long", "bun", "bald"] = "short"
     shirt: Color = "#3c6e96"
     trousers: Color = "#384050"
+    sleeve: Literal["short", "long", "bare"] = "short"
+    build: float = Field(1.0, ge=0.7, le=1.6, description="How wide trunk and limbs are.")
+    hand_m: float = Field(0.18, ge=0.1, le=0.25, description="Length of the hand.")
+    spread: float = Field(1.0, ge=0.0, le=1.0, description="Of the fingers; 0 is closed.")
 
 
 class Person(_Part):
@@ -79,7 +91,13 @@ class Person(_Part):
     path: Annotated[tuple[WayPoint, ...], Field(strict=False, min_length=1)]
     raises: Annotated[tuple[Raise, ...], Field(strict=False)] = ()
     seat_m: float | None = Field(None, ge=0.3, le=0.9, description="Height of the seat.")
+    activities: Annotated[tuple[Activity, ...], Field(strict=False)] = ()
     hand: Literal["left", "right"] = "right"
+    raise_style: Literal["beside", "straight", "low"] = Field(
+        "beside", description="The raised hand is beside the head, straight up, or low (the "
+        "elbow at the side)."
+    )  # fmt: skip
+    lean_deg: float = Field(0.0, ge=-40.0, le=40.0, description="Of the raised hand, outward.")
     look: PersonLook = Field(default_factory=PersonLook)
 
     @model_validator(mode="after")
@@ -93,6 +111,8 @@ class Person(_Part):
             )
         edges = [edge for each in self.raises for edge in (each.from_s, each.until_s)]
         _check_times(edges, "raises", "from_s, until_s")
+        edges = [edge for each in self.activities for edge in (each.from_s, each.until_s)]
+        _check_times(edges, "activities", "from_s, until_s")
         for before, after in pairwise(self.raises):
             if after.from_s - before.until_s < 2 * ARM_MOTION_S:
                 raise ValueError(
@@ -131,7 +151,9 @@ class Camera(_Part):
     cx: float = 320.0
     cy: float = 240.0
     noise_std: float = Field(1.5, ge=0.0, le=60.0, description="Of each pixel, in gray levels.")
-    blur_px: float = Field(0.5, ge=0.0, le=10.0)
+    blur_px: float = Field(0.5, ge=0.0, le=10.0, description="Standard deviation of the focus.")
+    motion_px: int = Field(1, ge=1, le=64, description="Length of a sideways smear.")
+    exposure: float = Field(1.0, gt=0.0, le=4.0, description="Brightness of everything.")
 
 
 class Laser(_Part):
@@ -190,6 +212,7 @@ class Scene(_Part):
     camera: Camera = Field(default_factory=Camera)
     laser: Laser = Field(default_factory=Laser)
     floor: Color = "#9c8b78"
+    backlight: float = Field(1.0, gt=0.0, le=16.0, description="Brightness of what is behind.")
     walls: Annotated[tuple[Wall, ...], Field(strict=False)] = ()
     tables: Annotated[tuple[Table, ...], Field(strict=False)] = ()
     people: Annotated[tuple[Person, ...], Field(strict=False)] = ()
@@ -301,6 +324,6 @@ def _reason(item: Any) -> str:
 
 def _suggestion(name: str) -> str:
     parts = (Scene, Robot, Camera, Laser, Wall, Table, Person, PersonLook, DrivePoint, WayPoint)
-    known = {key for part in (*parts, Raise) for key in part.model_fields}
+    known = {key for part in (*parts, Raise, Activity) for key in part.model_fields}
     close = get_close_matches(name, known, n=1)
     return f"; did you mean `{close[0]}`?" if close else ""

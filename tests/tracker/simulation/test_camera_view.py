@@ -93,3 +93,36 @@ def test_every_hand_of_the_projects_scenes_is_in_view_while_it_is_up(name):
         people = people_at(scene, time_s)
         in_view = hands_in_view(scene, view_at(scene, time_s), people)
         assert in_view[people.hand_up].all(), f"at {time_s:.1f} s"
+
+
+def test_exposure_darkens_everything_and_backlight_what_is_behind(room):
+    room["robot"], room["tables"] = {}, []
+    room["people"] = [{"id": 1, "path": [{"x_m": 2.0, "y_m": 0.0}], "look": {"shirt": "#406080"}}]
+    normal = painted(quiet(room), 0.0).astype(float)
+    room["backlight"], room["camera"]["exposure"] = 1.5, 0.5
+    shown = painted(quiet(room), 0.0).astype(float)
+    np.testing.assert_allclose(shown[60, 80], 0.5 * normal[60, 80], atol=1.5)  # the shirt
+    np.testing.assert_allclose(shown[30, 10], 0.75 * normal[30, 10], atol=1.5)  # the wall
+
+
+def test_motion_smears_sideways_alone(room):
+    room["camera"]["motion_px"] = 5
+    smeared = painted(quiet(room), 0.0).astype(float)
+    room["camera"]["motion_px"] = 1
+    sharp = painted(quiet(room), 0.0).astype(float)
+    mean = sum(sharp[:, 2 + shift : 158 + shift] for shift in (-2, -1, 0, 1, 2)) / 5
+    np.testing.assert_allclose(smeared[:, 2:158], mean, atol=1.0)
+
+
+def test_an_activity_moves_the_hands_and_a_raise_interrupts_it(room):
+    room["robot"], room["tables"] = {}, []
+    guest = {"id": 1, "path": [{"x_m": 2.0, "y_m": 0.0}]}
+    room["people"] = [guest]
+    idle = painted(quiet(room), 0.1)
+    guest["activities"] = [{"what": "phone", "from_s": 0.0, "until_s": 1.0}]
+    busy = quiet(room)
+    assert np.any(painted(busy, 0.1) != idle)
+    np.testing.assert_array_equal(painted(busy, 1.1), painted(busy, 1.9))
+    np.testing.assert_array_equal(painted(busy, 1.1), idle)
+    guest["raises"] = [{"from_s": 0.5, "until_s": 1.5}]
+    assert people_at(quiet(room), 0.6).doing == (None,)
