@@ -13,6 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from tracker.cli_evaluate import evaluate_command
 from tracker.cli_models import models_app
 from tracker.cli_monte_carlo import monte_carlo_command
 from tracker.cli_options import (
@@ -38,6 +39,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.command("evaluate")(evaluate_command)
 app.command("monte-carlo")(monte_carlo_command)
 app.add_typer(models_app, name="models", no_args_is_help=True)
 

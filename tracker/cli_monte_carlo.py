@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import contextmanager
 from dataclasses import replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from tracker.cli_jobs import JobsOption, processes
 from tracker.cli_options import (
     ConfigOption,
     JsonOption,
@@ -41,9 +37,7 @@ def monte_carlo_command(
         Path | None,
         typer.Option(help="CSV of real people's paths (t_s, id, x_m, y_m) to walk along."),
     ] = None,
-    jobs: Annotated[
-        int, typer.Option("--jobs", "-j", help="Processes; 0 is one per core.", min=0)
-    ] = 0,
+    jobs: JobsOption = 0,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", help="Folder for study.json, trials.csv and study.png."),
@@ -78,7 +72,7 @@ def monte_carlo_command(
         chosen = replace(chosen, recording=str(paths))
     settings = parameters_from(config, param, default_config(chosen))
     alone = isinstance(chosen, FilterScenario)
-    with _executor(1 if alone else jobs, trials) as executor, bar(errors, "Running") as progress:
+    with processes(1 if alone else jobs, trials) as executor, bar(errors, "Running") as progress:
         study = monte_carlo(
             chosen,
             trials,
@@ -94,14 +88,3 @@ def monte_carlo_command(
     else:
         console.print(study_table(study))
         print_files(files)
-
-
-@contextmanager
-def _executor(jobs: int, trials: int) -> Iterator[Executor | None]:
-    """That many processes; none where a single one would do."""
-    jobs = min(jobs or os.cpu_count() or 1, trials)
-    if jobs == 1:
-        yield None
-        return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as executor:
-        yield executor

@@ -22,8 +22,8 @@ FLOORS = [
     {"simulation"},
     {"evaluation"},
     {"report"},
-    {"replay_outputs", "cli_progress", "cli_options"},
-    {"replay", "cli_models", "cli_monte_carlo"},
+    {"replay_outputs", "cli_progress", "cli_options", "cli_jobs"},
+    {"replay", "cli_models", "cli_monte_carlo", "cli_evaluate"},
     {"cli"},
 ]
 FLOOR_OF = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}

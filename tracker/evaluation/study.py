@@ -14,6 +14,7 @@ from tracker.containers import FloatArray
 from tracker.evaluation.consistency import mean_bounds
 from tracker.evaluation.cramer_rao import posterior_bound
 from tracker.evaluation.filter_study import prior_covariance
+from tracker.evaluation.intervals import wilson_interval
 from tracker.evaluation.scenario import (
     FilterScenario,
     KnownPeopleScenario,
@@ -258,13 +259,10 @@ def _root_mean(name: str, squares: FloatArray) -> Figure:
 
 
 def _share(name: str, count: float, total: float) -> Figure:
-    """A share and Wilson's interval of it; also right where the count is nothing or all."""
+    """A share and Wilson's interval of it."""
     if total == 0:
         return Figure(name, float("nan"))
-    share, z = float(count / total), float(norm.ppf(0.975))
-    middle = (share + z**2 / (2 * total)) / (1 + z**2 / total)
-    half = z * np.sqrt(share * (1 - share) / total + z**2 / (4 * total**2)) / (1 + z**2 / total)
-    return Figure(name, share, float(middle - half), float(middle + half))
+    return Figure(name, float(count / total), *wilson_interval(count, total))
 
 
 def _number(value: float) -> float | None:

@@ -133,13 +133,18 @@ class PhotoSource:
 
     def read(self, message: RawMessage, *, is_static: bool) -> list[Event]:
         """As `Source.read`."""
-        return [_image(message.log_ns, _read_photo(message.data))]
+        return [_image(message.log_ns, read_photo(message.data))]
 
     def close(self) -> None:
         """Nothing stays open between calls."""
 
 
-def _read_photo(path: Path) -> ImageArray:
+def read_photo(path: Path) -> ImageArray:
+    """One photo, shape (height, width, 3), BGR.
+
+    Raises:
+        RecordingError: It cannot be read or decoded.
+    """
     try:
         data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
     except OSError as error:
@@ -149,7 +154,7 @@ def _read_photo(path: Path) -> ImageArray:
 
 def _is_photo(path: Path) -> bool:
     try:
-        _read_photo(path)
+        read_photo(path)
     except RecordingError:
         return False
     return True

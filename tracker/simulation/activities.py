@@ -49,14 +49,14 @@ class Moment:
 def _talk() -> tuple[Moment, ...]:
     """Both hands before the chest; now and then the fingers point up for a moment."""
     at = [
-        ((0.16, 1.06), -70.0), ((0.24, 1.12), -35.0), ((0.30, 1.18), 18.0), ((0.34, 1.12), 55.0),
-        ((0.20, 1.05), -80.0), ((0.26, 1.20), -20.0), ((0.32, 1.08), 75.0), ((0.18, 1.14), -55.0),
+        ((0.16, 1.06), -70.0), ((0.24, 1.12), -60.0), ((0.30, 1.20), 22.0), ((0.34, 1.12), 55.0),
+        ((0.20, 1.05), -80.0), ((0.26, 1.14), -65.0), ((0.32, 1.08), 75.0), ((0.26, 1.18), -25.0),
     ]  # fmt: skip
     gestures = [
         Gesture(place, angle, palm_visible=row % 3 != 0, spread=0.7)
         for row, (place, angle) in enumerate(at)
     ]
-    other = [gestures[(3 * row + 4) % len(gestures)] for row in range(len(gestures))]
+    other = [gestures[(row + 4) % len(gestures)] for row in range(len(gestures))]
     return tuple(Moment(0.35, *pair) for pair in zip(gestures, other, strict=True))
 
 

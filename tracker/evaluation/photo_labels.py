@@ -1,0 +1,127 @@
+"""Whose hand is up in these photos? The user's own labels.csv: file, raised, and perhaps where."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from tracker.containers import FloatArray
+from tracker.errors import RecordingError
+
+LABELS = "labels.csv"
+
+_COLUMNS = ("file", "raised", "x", "y")
+_YES, _NO = frozenset({"1", "true", "yes"}), frozenset({"0", "false", "no"})
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LabeledPhoto:
+    """One photo and its raised hands.
+
+    Attributes:
+        path: The photo.
+        wrists_px: Shape (R, 2): column and row of each raised hand's wrist; NaN where the labels
+            say only that there is one.
+    """
+
+    path: Path
+    wrists_px: FloatArray
+
+
+def read_labels(folder: str | Path) -> tuple[LabeledPhoto, ...]:
+    """Read the labels of a folder of photos.
+
+    The columns are `file`, `raised` (1 or 0) and, if wanted, `x` and `y`: the pixel of the wrist.
+    There is a row for each raised hand; a photo without any has one row with raised 0.
+
+    Args:
+        folder: Holds the photos and `labels.csv`.
+
+    Returns:
+        The photos, in the order of their first rows.
+
+    Raises:
+        RecordingError: There are no labels, a row is off, or a photo is not there; the message
+            names the line.
+    """
+    path = Path(folder) / LABELS
+    wrists: dict[str, list[tuple[float, float]]] = {}
+    empty: dict[str, int] = {}
+    for line, row in _rows(path):
+        where = f"{path}: line {line}"
+        name = (row["file"] or "").strip()
+        if not name or not (path.parent / name).is_file():
+            raise RecordingError(
+                f"{where}: there is no photo {name!r} in {path.parent}; correct the name or "
+                "remove the line."
+            )
+        hands = wrists.setdefault(name, [])
+        if _is_raised(row, where):
+            hands.append(_wrist(row, where))
+        else:
+            empty.setdefault(name, line)
+        if hands and name in empty:
+            raise RecordingError(
+                f"{where}: {name} has raised hands, but line {empty[name]} or this one says "
+                "raised 0; leave that one out."
+            )
+    if not wrists:
+        raise RecordingError(f"{path}: holds no labels; a line like `photo.jpg,1` is needed.")
+    return tuple(
+        LabeledPhoto(path.parent / name, np.array(hands, dtype=np.float64).reshape(-1, 2))
+        for name, hands in wrists.items()
+    )
+
+
+def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.DictReader(file, skipinitialspace=True, restval="")
+            names = [name.strip() for name in reader.fieldnames or ()]
+            if not {"file", "raised"} <= set(names) <= set(_COLUMNS):
+                raise RecordingError(
+                    f"{path}: line 1: the columns are {', '.join(names) or 'none'}; needed are "
+                    "file,raised or file,raised,x,y."
+                )
+            reader.fieldnames = names
+            for row in reader:
+                if None in row:
+                    raise RecordingError(
+                        f"{path}: line {reader.line_num}: more values than the columns "
+                        f"{','.join(names)}."
+                    )
+                yield reader.line_num, row
+    except FileNotFoundError as error:
+        raise RecordingError(
+            f"{path}: is not there; write one with the columns file,raised or file,raised,x,y."
+        ) from error
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror}).") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise RecordingError(f"{path}: is no CSV file in UTF-8 ({error}).") from error
+
+
+def _is_raised(row: dict[str, str], where: str) -> bool:
+    text = row["raised"].strip().lower()
+    if text not in _YES | _NO:
+        raise RecordingError(f"{where}: raised is {row['raised']!r}; needed is 1 or 0.")
+    return text in _YES
+
+
+def _wrist(row: dict[str, str], where: str) -> tuple[float, float]:
+    texts = [row.get(name, "").strip() for name in ("x", "y")]
+    if not any(texts):
+        return float("nan"), float("nan")
+    try:
+        x, y = (float(text) for text in texts)
+    except ValueError as error:
+        raise RecordingError(
+            f"{where}: x, y are {texts[0]!r}, {texts[1]!r}; needed is a pixel, or neither."
+        ) from error
+    if not (0.0 <= x < np.inf and 0.0 <= y < np.inf):
+        raise RecordingError(f"{where}: x, y are {x:g}, {y:g}; needed is a pixel of the photo.")
+    return x, y

@@ -1,0 +1,116 @@
+"""Where does detection succeed, and what fools it? One picture of an evaluation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tracker.evaluation.detection_episode import FRAMES_TO_FIND
+from tracker.evaluation.detection_figures import (
+    FalseRate,
+    Recall,
+    false_rate,
+    false_rate_by_activity,
+    recall_by_factor,
+    recall_of,
+)
+from tracker.evaluation.detection_study import DetectionStudy
+from tracker.report.palette import FADED, INK, PAPER, PERSON_COLORS
+
+_RECALL, _FALSE = PERSON_COLORS[0], PERSON_COLORS[1]
+_SMALL = ("size of the hand", "light", "blur", "skin", "sleeve", "hand", "style", "company")
+
+
+def draw_detection(study: DetectionStudy, path: str | Path) -> None:
+    """Draw recall against distance, recall by every other factor, and false raises.
+
+    Args:
+        study: What was found.
+        path: The .png file, replaced if it exists.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    figure = Figure(figsize=(12.0, 9.6), dpi=140, facecolor=PAPER, layout="constrained")
+    grid = figure.add_gridspec(3, 4, height_ratios=(1.5, 1.0, 1.0))
+    by_factor = recall_by_factor(study)
+    _draw_distance(figure.add_subplot(grid[0, :2]), study, by_factor["distance"])
+    _draw_false(figure.add_subplot(grid[0, 2:]), study)
+    total = recall_of("all", study.episodes)
+    for place, name in enumerate(_SMALL):
+        axes = figure.add_subplot(grid[1 + place // 4, place % 4])
+        _draw_levels(axes, name, by_factor[name], total)
+    figure.suptitle(
+        f"{total.found} of {total.total} raised hands found within {FRAMES_TO_FIND} images; "
+        f"{false_rate(study.minutes).count} false raises in {len(study.minutes)} minutes "
+        f"(seed {study.seed}, bars: 95 % intervals)",
+        color=INK,
+    )
+    figure.savefig(path, format="png")
+
+
+def _draw_distance(axes: Axes, study: DetectionStudy, rows: Sequence[Recall]) -> None:
+    at_m = [item for item in study.distances_m if f"{item:g} m" in {row.level for row in rows}]
+    shares = np.array([row.share for row in rows])
+    bars = np.array([(row.share - row.low, row.high - row.share) for row in rows]).reshape(-1, 2)
+    axes.errorbar(
+        at_m, shares, bars.T, color=_RECALL, marker="o", capsize=4, linewidth=1.6, clip_on=False
+    )
+    for distance_m, row in zip(at_m, rows, strict=True):
+        axes.annotate(
+            f"{row.found}/{row.total}", (distance_m, row.high), (0, 7), fontsize=8, color=INK,
+            textcoords="offset points", ha="center", annotation_clip=False,
+        )  # fmt: skip
+    axes.set(xlabel="distance (m)", ylabel="recall", ylim=(0.0, 1.08), title="found")
+    axes.set_xticks(at_m)
+    axes.set_yticks(np.linspace(0.0, 1.0, 6))
+    _plain(axes)
+
+
+def _draw_levels(axes: Axes, name: str, rows: Sequence[Recall], total: Recall) -> None:
+    at = np.arange(len(rows))
+    shares = np.array([row.share for row in rows])
+    bars = np.array([(row.share - row.low, row.high - row.share) for row in rows]).reshape(-1, 2)
+    axes.axvline(total.share, color=FADED, linewidth=0.8)
+    axes.errorbar(shares, at, xerr=bars.T, color=_RECALL, marker="o", linestyle="none", capsize=3)
+    axes.set_yticks(at, [f"{row.level} ({row.total})" for row in rows])
+    axes.set(xlim=(-0.02, 1.02), ylim=(max(len(rows), 1) - 0.5, -0.5), title=f"recall by {name}")
+    axes.set_xticks((0.0, 0.5, 1.0))
+    _plain(axes)
+
+
+def _draw_false(axes: Axes, study: DetectionStudy) -> None:
+    rows = false_rate_by_activity(study.minutes)
+    rows = [*sorted(rows, key=lambda row: row.level), false_rate(study.minutes)]
+    rows = [row for row in rows if row.hours]
+    at = np.arange(len(rows))
+    rates = np.array([row.per_hour for row in rows])
+    bars = np.array([(row.per_hour - row.low, row.high - row.per_hour) for row in rows])
+    axes.errorbar(
+        rates, at, xerr=bars.reshape(-1, 2).T, color=_FALSE, marker="o", linestyle="none",
+        capsize=3,
+    )  # fmt: skip
+    # Rates span from a fraction to hundreds, and nothing at all is the best of them.
+    axes.set_xscale("symlog", linthresh=1.0)
+    axes.axvline(1.0, color=FADED, linewidth=0.8)
+    axes.set_yticks(at, [_false_label(row) for row in rows])
+    axes.set(xlabel="false raises an hour", title="invented while nobody calls")
+    axes.set(xlim=(-0.1, None), ylim=(max(len(rows), 1) - 0.5, -0.5))
+    _plain(axes)
+
+
+def _false_label(row: FalseRate) -> str:
+    who = "camera" if row.level == "nobody calls" else row.level.replace("_", " ")
+    return f"{who} ({row.count} in {row.hours:.2f} h)"
+
+
+def _plain(axes: Axes) -> None:
+    axes.set_facecolor(PAPER)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(colors=INK, labelsize=8)
+    axes.title.set_fontsize(10)
+    axes.grid(color=FADED, alpha=0.2, linewidth=0.6)

@@ -1,0 +1,76 @@
+"""How does the judgement of a folder of photos look in a terminal, and in files?"""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tracker.errors import RecordingError
+from tracker.evaluation.photo_study import PhotoStudy, Share, photos_as_dict
+from tracker.report.contact_sheet import draw_contact_sheet
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+
+def photo_tables(study: PhotoStudy) -> tuple[Table, ...]:
+    """One line per photo with something missed or invented, then the totals."""
+    from rich.table import Table
+
+    photos = Table(title="Photos with something missed or invented", title_justify="left")
+    photos.add_column("photo")
+    for name in ("raised", "found", "false"):
+        photos.add_column(name, justify="right")
+    for item in study.photos:
+        found, false = int(item.is_found.sum()), int(item.is_false.sum())
+        if found < len(item.is_found) or false:
+            photos.add_row(item.photo.path.name, str(len(item.is_found)), str(found), str(false))
+    totals = Table(title=f"{len(study.photos)} photos", title_justify="left")
+    totals.add_column("")
+    for name in ("count", "share", "95 % interval"):
+        totals.add_column(name, justify="right")
+    for share in study.shares:
+        totals.add_row(share.name, f"{share.count} of {share.total}", *_percents(share))
+    return (photos, totals) if photos.row_count else (totals,)
+
+
+def write_photos(study: PhotoStudy, folder: str | Path) -> tuple[Path, ...]:
+    """Write evaluation.json, photos.csv (a line per photo) and contact_sheet.png.
+
+    Args:
+        study: What was found.
+        folder: Made where it is missing; what is there is replaced.
+
+    Returns:
+        The files; the contact sheet only where something was missed or invented.
+
+    Raises:
+        RecordingError: A file cannot be written, or a photo no longer read.
+    """
+    folder = Path(folder)
+    names = ("evaluation.json", "photos.csv", "contact_sheet.png")
+    document, table, picture = (folder / name for name in names)
+    told = photos_as_dict(study)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        document.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+        with table.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, list(told["photos"][0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(told["photos"])
+        is_drawn = draw_contact_sheet(study, picture)
+    except OSError as error:
+        raise RecordingError(
+            f"{folder}: cannot be written ({error.strerror}); "
+            "a folder that may be written and has room is needed."
+        ) from error
+    return (document, table, picture) if is_drawn else (document, table)
+
+
+def _percents(share: Share) -> tuple[str, str]:
+    if share.total == 0:
+        return "-", ""
+    interval = f"{100 * share.low:.1f} % to {100 * share.high:.1f} %"
+    return f"{100 * share.count / share.total:.1f} %", interval
