@@ -1,6 +1,7 @@
 import json
 import sys
 
+import cv2
 import numpy as np
 import pytest
 
@@ -40,6 +41,7 @@ def complaint(error):
         ("replay",),
         ("simulate",),
         ("monte-carlo",),
+        ("evaluate",),
         ("models",),
         ("models", "fetch"),
         ("models", "list"),
@@ -175,3 +177,40 @@ def test_zero_sized_images_are_one_line_and_status_1(run, tmp_path, model_store)
     assert status == 1
     assert "/image_raw" in complaint(error)
     assert (tmp_path / "out/output.mcap").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "expected"),
+    [
+        (("evaluate", "--distances", "near"), 2, "--distances is 'near'; needed are meters"),
+        (("evaluate", "--distances", "0.1,2"), 2, "The distances are 0.1, 2; needed"),
+        (("evaluate", "-n", 0, "--minutes-of-nobody", 0), 2, "0 episodes and 0 minutes"),
+        (("evaluate", "nowhere"), 1, "labels.csv: is not there; write one"),
+    ],
+)
+def test_an_evaluation_that_cannot_be_is_one_line(run, words, status, expected):
+    got, _, error = run(*words)
+    assert got == status
+    assert expected in complaint(error)
+
+
+@pytest.mark.model
+def test_evaluate_measures_drawn_scenes(run, tmp_path):
+    got, output, _ = run(
+        "evaluate", "-n", 1, "--minutes-of-nobody", 0, "--distances", 2, "-j", 1,
+        "--json", "-o", "out",
+    )  # fmt: skip
+    assert got == 0
+    assert json.loads(output)["recall"]["total"] == 1
+    assert (tmp_path / "out" / "evaluation.png").is_file()
+
+
+@pytest.mark.model
+def test_evaluate_judges_photos(run, tmp_path):
+    (tmp_path / "photos").mkdir()
+    (tmp_path / "photos" / "labels.csv").write_text("file,raised\ngray.png,0\n")
+    cv2.imwrite(str(tmp_path / "photos" / "gray.png"), np.full((120, 160, 3), 128, np.uint8))
+    got, output, _ = run("evaluate", "photos", "-o", "out")
+    assert got == 0
+    assert "0 of 1" in output
+    assert (tmp_path / "out" / "photos.csv").read_text().splitlines()[1] == "gray.png,0,0,0"

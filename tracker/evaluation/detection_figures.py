@@ -88,7 +88,7 @@ def recall_by_factor(study: DetectionStudy) -> dict[str, list[Recall]]:
     """Recall at each level of each factor: distance, size, and what the scenes were drawn from."""
     factors: dict[str, Callable[[Episode], str]] = {
         "distance": lambda item: f"{item.conditions.distance_m:g} m",
-        "size of the hand": lambda item: _size(item.score.hand_px),
+        "size": lambda item: _size(item.score.hand_px),
         **{name: _condition(name) for name in FACTORS},
         "style": lambda item: item.style,
         "posture": lambda item: item.posture,
@@ -96,7 +96,7 @@ def recall_by_factor(study: DetectionStudy) -> dict[str, list[Recall]]:
     sizes = [_size(low) for low in _SIZES_PX]
     order = {
         "distance": [f"{distance_m:g} m" for distance_m in study.distances_m],
-        "size of the hand": sizes,
+        "size": sizes,
         **FACTORS,
         "style": ("beside", "straight", "low"),
         "posture": ("sits", "stands"),

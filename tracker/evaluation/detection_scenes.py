@@ -56,7 +56,7 @@ FACTORS: dict[str, tuple[str, ...]] = {
     "skin": tuple(_SKIN),
     "sleeve": ("long", "short", "bare"),
     "hand": ("left", "right"),
-    "company": ("alone", "beside idler"),
+    "company": ("alone", "together"),
 }
 _ATTEMPTS = 1000
 _ROOM_TINT = 35
@@ -73,7 +73,7 @@ class Conditions:
         skin: Of the caller.
         sleeve: Of the caller.
         hand: Which one goes up.
-        company: Whether somebody else is in the room.
+        company: Whether somebody else, who does not call, is in the room.
     """
 
     distance_m: float
@@ -192,7 +192,7 @@ def _deal(levels: Sequence[str], count: int, rng: np.random.Generator) -> list[s
 def _idler(
     number: int, distance_m: float, bearing_rad: float, what: str, rng: np.random.Generator
 ) -> Person:
-    doing = Activity.model_validate({"what": what, "until_s": 3600.0})
+    doing = Activity.model_validate({"what": what, "tempo": rng.uniform(0.7, 1.5)})
     return _person(
         number,
         distance_m,

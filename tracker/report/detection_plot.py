@@ -22,11 +22,14 @@ from tracker.evaluation.detection_study import DetectionStudy
 from tracker.report.palette import FADED, INK, PAPER, PERSON_COLORS
 
 _RECALL, _FALSE = PERSON_COLORS[0], PERSON_COLORS[1]
-_SMALL = ("size of the hand", "light", "blur", "skin", "sleeve", "hand", "style", "company")
+_TITLES = {"size": "length of the hand", "company": "people in the picture"}
+_SMALL = ("size", "light", "blur", "skin", "sleeve", "hand", "style", "company")
 
 
 def draw_detection(study: DetectionStudy, path: str | Path) -> None:
-    """Draw recall against distance, recall by every other factor, and false raises.
+    """Draw recall against distance, recall by other factors, and false raises.
+
+    What was not played is left out.
 
     Args:
         study: What was found.
@@ -35,19 +38,25 @@ def draw_detection(study: DetectionStudy, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    figure = Figure(figsize=(12.0, 9.6), dpi=140, facecolor=PAPER, layout="constrained")
-    grid = figure.add_gridspec(3, 4, height_ratios=(1.5, 1.0, 1.0))
-    by_factor = recall_by_factor(study)
-    _draw_distance(figure.add_subplot(grid[0, :2]), study, by_factor["distance"])
-    _draw_false(figure.add_subplot(grid[0, 2:]), study)
+    rows = 3 if study.episodes else 1
+    figure = Figure(
+        figsize=(12.0, 9.6 if study.episodes else 4.0), dpi=140, facecolor=PAPER,
+        layout="constrained",
+    )  # fmt: skip
+    grid = figure.add_gridspec(rows, 4, height_ratios=(1.5, 1.0, 1.0)[:rows])
     total = recall_of("all", study.episodes)
-    for place, name in enumerate(_SMALL):
-        axes = figure.add_subplot(grid[1 + place // 4, place % 4])
-        _draw_levels(axes, name, by_factor[name], total)
+    if study.episodes:
+        by_factor = recall_by_factor(study)
+        _draw_distance(figure.add_subplot(grid[0, :2]), study, by_factor["distance"])
+        for place, name in enumerate(_SMALL):
+            axes = figure.add_subplot(grid[1 + place // 4, place % 4])
+            _draw_levels(axes, name, by_factor[name], total)
+    if study.minutes:
+        _draw_false(figure.add_subplot(grid[0, 2:]), study)
     figure.suptitle(
         f"{total.found} of {total.total} raised hands found within {FRAMES_TO_FIND} images; "
-        f"{false_rate(study.minutes).count} false raises in {len(study.minutes)} minutes "
-        f"(seed {study.seed}, bars: 95 % intervals)",
+        f"{false_rate(study.minutes).count} false raises in {len(study.minutes)} minutes\n"
+        f"seed {study.seed}; bars: 95 % intervals; gray lines: all hands below, one an hour above",
         color=INK,
     )
     figure.savefig(path, format="png")
@@ -78,7 +87,11 @@ def _draw_levels(axes: Axes, name: str, rows: Sequence[Recall], total: Recall) -
     axes.axvline(total.share, color=FADED, linewidth=0.8)
     axes.errorbar(shares, at, xerr=bars.T, color=_RECALL, marker="o", linestyle="none", capsize=3)
     axes.set_yticks(at, [f"{row.level} ({row.total})" for row in rows])
-    axes.set(xlim=(-0.02, 1.02), ylim=(max(len(rows), 1) - 0.5, -0.5), title=f"recall by {name}")
+    axes.set(
+        xlim=(-0.02, 1.02),
+        ylim=(len(rows) - 0.5, -0.5),
+        title=f"recall by {_TITLES.get(name, name)}",
+    )
     axes.set_xticks((0.0, 0.5, 1.0))
     _plain(axes)
 
@@ -86,7 +99,6 @@ def _draw_levels(axes: Axes, name: str, rows: Sequence[Recall], total: Recall) -
 def _draw_false(axes: Axes, study: DetectionStudy) -> None:
     rows = false_rate_by_activity(study.minutes)
     rows = [*sorted(rows, key=lambda row: row.level), false_rate(study.minutes)]
-    rows = [row for row in rows if row.hours]
     at = np.arange(len(rows))
     rates = np.array([row.per_hour for row in rows])
     bars = np.array([(row.per_hour - row.low, row.high - row.per_hour) for row in rows])
@@ -97,9 +109,10 @@ def _draw_false(axes: Axes, study: DetectionStudy) -> None:
     # Rates span from a fraction to hundreds, and nothing at all is the best of them.
     axes.set_xscale("symlog", linthresh=1.0)
     axes.axvline(1.0, color=FADED, linewidth=0.8)
+    axes.xaxis.set_major_formatter(lambda rate, _: f"{rate:g}")
     axes.set_yticks(at, [_false_label(row) for row in rows])
     axes.set(xlabel="false raises an hour", title="invented while nobody calls")
-    axes.set(xlim=(-0.1, None), ylim=(max(len(rows), 1) - 0.5, -0.5))
+    axes.set(xlim=(-0.1, None), ylim=(len(rows) - 0.5, -0.5))
     _plain(axes)
 
 

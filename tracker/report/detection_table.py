@@ -152,7 +152,7 @@ def _recall_cells(row: Recall) -> tuple[str, ...]:
         row.level,
         f"{row.found} of {row.total}",
         _percent(row.share),
-        f"{_percent(row.low)} to {_percent(row.high)}" if row.total else "",
+        f"{100 * row.low:.0f}-{100 * row.high:.0f} %" if row.total else "",
         "-" if np.isnan(row.median_frames) else f"{row.median_frames:g}",
         _percent(row.landmark_error),
     )

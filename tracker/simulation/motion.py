@@ -140,5 +140,5 @@ def _raised(person: Person, time_s: float) -> float:
 def _doing(person: Person, time_s: float) -> tuple[str, int] | None:
     for each in person.activities:
         if each.from_s <= time_s < each.until_s:
-            return each.what, moment_at(each.what, time_s - each.from_s)
+            return each.what, moment_at(each.what, each.tempo * (time_s - each.from_s))
     return None

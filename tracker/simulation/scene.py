@@ -66,6 +66,7 @@ class Activity(_Part):
     what: Literal["talk", "drink", "phone", "scratch", "rest", "wave_low"]
     from_s: float = Field(0.0, ge=0.0)
     until_s: float = Field(3600.0, gt=0.0)
+    tempo: float = Field(1.0, ge=0.2, le=5.0, description="Times as fast.")
 
 
 class PersonLook(_Part):

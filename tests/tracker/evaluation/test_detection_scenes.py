@@ -15,7 +15,7 @@ from tracker.evaluation.detection_scenes import (
 )
 from tracker.simulation.motion import people_at
 
-SOME = Conditions(2.0, "dark", "moving", "brown", "long", "left", "beside idler")
+SOME = Conditions(2.0, "dark", "moving", "brown", "long", "left", "together")
 
 
 def test_every_level_comes_equally_often_at_each_distance():

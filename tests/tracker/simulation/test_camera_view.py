@@ -126,3 +126,9 @@ def test_an_activity_moves_the_hands_and_a_raise_interrupts_it(room):
     np.testing.assert_array_equal(painted(busy, 1.1), idle)
     guest["raises"] = [{"from_s": 0.5, "until_s": 1.5}]
     assert people_at(quiet(room), 0.6).doing == (None,)
+
+
+def test_tempo_hurries_an_activity(room):
+    doing = {"what": "talk", "from_s": 0.0, "until_s": 9.0, "tempo": 2.0}
+    room["people"] = [{"id": 1, "path": [{"x_m": 2.0, "y_m": 0.0}], "activities": [doing]}]
+    assert people_at(scene_from_mapping(room), 0.4).doing == (("talk", 2),)
