@@ -45,6 +45,9 @@ class Recall:
 class FalseRate:
     """How often something was taken for a raised hand.
 
+    The interval takes false raises for independent. Who gestures that way does so again and again,
+    so that few minutes with many of them are less sure than it says.
+
     Attributes:
         level: During what.
         count: False raises.

@@ -40,17 +40,14 @@ def recall_table(study: DetectionStudy) -> Table:
     )
     for name in ("factor", "level"):
         table.add_column(name, no_wrap=True)
-    for name in ("found", "recall", "95 % interval", "images", "landmarks"):
+    for name in ("found", "recall", "95 % interval", "images", "error"):
         table.add_column(name, justify="right", no_wrap=True)
     for factor, rows in recall_by_factor(study).items():
         for place, row in enumerate(rows):
             table.add_row(factor if place == 0 else "", *_recall_cells(row))
         table.add_section()
     table.add_row("all", *_recall_cells(recall_of("", study.episodes)))
-    table.caption = (
-        "images: median until found; landmarks: median distance from the drawn ones, in hand "
-        "lengths"
-    )
+    table.caption = "images: median until found; error: of the landmarks, median, in hand lengths"
     table.caption_justify = "left"
     return table
 
