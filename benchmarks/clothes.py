@@ -23,8 +23,8 @@ from scipy.optimize import minimize
 from tracker import CameraImage, Config, Hands
 from tracker.perception.clothes import clothes_histograms
 from tracker.simulation import scene_from_mapping
+from tracker.simulation.arm import raised_hand_landmarks
 from tracker.simulation.camera_view import CameraView, hands_in_view, is_from_behind, look_of
-from tracker.simulation.figure import raised_hand_landmarks
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
 from tracker.simulation.stream import map_from_camera

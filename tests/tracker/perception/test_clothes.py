@@ -9,8 +9,8 @@ from tracker import CameraImage, Config, Hands
 from tracker.perception import HandFinder
 from tracker.perception.clothes import BINS, clothes_histograms
 from tracker.simulation import scene_from_mapping
+from tracker.simulation.arm import raised_hand_landmarks
 from tracker.simulation.camera_view import CameraView, look_of
-from tracker.simulation.figure import raised_hand_landmarks
 from tracker.simulation.hand_shape import LANDMARKS
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
