@@ -151,7 +151,7 @@ class Config(BaseModel):
         unit="image widths", group="perception", live=True, ge=0.0, le=1.0,
     )  # fmt: skip
     search_regions_per_frame: int = _parameter(
-        2, "Places of the picture (the whole, tiles, windows around people) that are searched for "
+        3, "Places of the picture (the whole, tiles, windows around people) that are searched for "
         "new hands in each image.",
         group="perception", live=True, ge=1, le=64,
     )  # fmt: skip
@@ -293,8 +293,9 @@ class Config(BaseModel):
         group="tracking", live=True, ge=0.05, le=0.99,
     )  # fmt: skip
     appearance_weight: float = _parameter(
-        1.0, "What likeness of the clothes counts when a measurement is assigned: 1 as much as it "
-        "was measured to be worth, 0 nothing.",
+        0.0, "What likeness of the clothes counts when a measurement is assigned: 1 as much as it "
+        "was measured to be worth on pictures, 0 nothing; it saves wrong identities and costs "
+        "new ones.",
         group="tracking", live=True, ge=0.0, le=10.0,
     )  # fmt: skip
     newcomer_density: float = _parameter(

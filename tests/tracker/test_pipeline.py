@@ -290,6 +290,7 @@ def test_a_customer_who_stands_still_with_the_hand_down_is_no_furniture():
 
 
 def test_raised_hands_are_measured_with_the_clothes_of_their_owners(located):
+    located.configure(Config(appearance_weight=1.0))
     assert play(located, 1)[0].measurements.appearance is not None
     located.detector.wrists_px = ()
     assert play(located, 1, START_NS + PERIOD_NS)[0].measurements.appearance is None
@@ -305,7 +306,7 @@ def test_each_measurement_shows_the_clothes_below_its_own_hand():
     landmarks = wrists[:, None] + 50.0 * LANDMARKS * [1.0, -1.0]
     one = np.ones(2)
     hands = Hands(landmarks, one, one, np.array([True, False]), one)
-    pipeline = Pipeline(Config(), SeenHands())
+    pipeline = Pipeline(Config(appearance_weight=1.0), SeenHands())
     pipeline.detector.find = lambda image: hands
     result = pipeline.process(image_at(START_NS))
     of_hand = dict(zip(result.measurements.hand, result.measurements.appearance, strict=True))

@@ -265,6 +265,7 @@ SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
             _HANDS_DOWN,
             title="The same measurements, and the camera sees clothes below raised hands.",
             appearance_noise=0.6,
+            parameters=_parameters(appearance_weight=1.0),
         ),
         "hands-down-scans": ScanScenario(
             title="The same in a furnished room, with people found in ray-cast scans.",

@@ -1,9 +1,9 @@
 """Where does the palm search look next? The places of the picture, by need.
 
 A hand at three meters is lost in a whole picture squeezed to the model's input, so pieces of the
-picture are searched as well: a rotation of the whole frame and overlapping tiles, and windows
-around people who are expected somewhere. A few of them are searched in each image; the longer ago
-one was, the greater its need, and where a hand is likelier its need grows faster.
+picture are searched as well: a rotation of overlapping tiles, and windows around people who are
+expected somewhere. A few of them are searched in each image; the longer ago one was, the greater
+its need, and where a hand is likelier its need grows faster. The whole picture has its own period.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ FAR_TILE_SIDE, FAR_TILE_TOPS = 1 / 3, (1 / 6, 1 / 3)
 TILE_STEPS = (0.42, 0.5)
 #: How many times as fast as a tile's the need of a place grows; where somebody is expected and
 #: something moved, an arm may have gone up.
-EXPECTED_WEIGHT, WHOLE_WEIGHT, MOVED_WEIGHT = 10.0, 5.0, 2.0
+EXPECTED_WEIGHT, MOVED_WEIGHT = 10.0, 2.0
+#: The whole picture is searched in every so many images: a hand near by, which it shows, is found
+#: in time to be called raised in the third image.
+WHOLE_PERIOD = 2
 #: Windows that overlap more than this are the same place; neighboring tiles overlap by 0.41.
 SAME_PLACE_OVERLAP = 0.5
 #: So many images are remembered for expected places. Older ones and those where nobody has looked
@@ -71,13 +74,14 @@ class SearchPlan:
         places = np.concatenate([self._rotation, clip_boxes(expected_px, self._size)])
         weight = np.where(_holds_center(places, moved_px), MOVED_WEIGHT, 1.0)
         weight[tiles:] *= EXPECTED_WEIGHT
-        weight[0] = WHOLE_WEIGHT
+        weight[0] = 0.0  # it has a period of its own
+        is_due = self._turn - self._rotation_turn[0] >= WHOLE_PERIOD
         chosen: list[int] = []
-        for _ in range(min(count, len(places))):
+        while len(chosen) < min(count, len(places)):
             age = np.concatenate([self._turn - self._rotation_turn, self._ages(places[tiles:])])
             need = weight * age
             need[chosen] = -1.0
-            place = int(np.argmax(need))
+            place = 0 if is_due and not chosen else int(np.argmax(need))
             chosen.append(place)
             self._lately.append((self._turn, places[place]))
             if place < tiles:

@@ -46,11 +46,11 @@ def test_tiles_of_any_picture_cover_every_part_and_lie_close(size):
         assert np.all(np.diff(np.unique(windows[:, axis])) <= step * side + 1e-9)
 
 
-def test_a_picture_at_rest_is_searched_all_over_and_the_whole_most_often():
-    seen = [window for frame in choices(60) for window in frame]
-    assert seen[0] == (0, 0, 640, 480)
+def test_a_picture_at_rest_is_searched_all_over_and_as_a_whole_every_other_time():
+    seen = [window for (window,) in choices(70)]
     assert set(seen) == all_places(*SIZE)
-    assert seen.count((0, 0, 640, 480)) >= 7
+    assert {place for place in seen[::2]} == {(0, 0, 640, 480)}
+    assert (0, 0, 640, 480) not in seen[1::2]
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
@@ -66,25 +66,25 @@ def test_no_place_waits_longer_than_a_bound_whatever_is_expected_and_moves(count
                 last[tuple(window)] = frame
         longest = max(longest, *(frame - then for then in last.values()))
     # An expected place with movement needs 12 * 10 * 2 = 240 at most: a tile that waits longer
-    # comes first.
-    assert longest <= 240 + 34 / count
+    # comes first. Half a place of each image goes to the whole.
+    assert longest <= 240 + 33 / (count - 0.5)
 
 
 def test_a_few_expected_places_come_every_few_frames_and_the_rest_still():
     people = np.array([[100.0, 50, 220, 170], [400, 60, 520, 180]])
-    seen = [window for frame in choices(200, expected=people) for window in frame]
+    frames = choices(200, count=2, expected=people)
     for place in people.astype(int).tolist():
-        turns = np.flatnonzero([window == tuple(place) for window in seen])
+        turns = np.flatnonzero([tuple(place) in frame for frame in frames])
         assert turns[0] <= 2
         assert np.diff(turns).max() <= 8
-    assert all_places(*SIZE) <= set(seen)
+    assert all_places(*SIZE) <= {window for frame in frames for window in frame}
 
 
 def test_tiles_where_something_moved_come_before_the_rest():
     plan = SearchPlan(SIZE)
     choices(60, plan=plan)
     moved = np.array([[500.0, 330, 520, 350]])
-    seen = [frame[0] for frame in choices(200, moved=moved, plan=plan)]
+    seen = [window for frame in choices(400, moved=moved, plan=plan) for window in frame]
     for holds in [(400, 240, 640, 480), (400, 120, 640, 360), (300, 240, 540, 480)]:
         assert seen.count(holds) >= 1.7 * seen.count((0, 0, 240, 240)) > 0
 
@@ -95,8 +95,7 @@ def test_a_person_in_whose_window_something_moved_comes_soon():
     choices(60, expected=people, plan=plan)
     arm = np.array([[325.0, 60, 345, 90]])
     for _ in range(8):
-        (first,) = plan.choose(1, people, arm).tolist()
-        if first == people[5].tolist():
+        if people[5].tolist() in plan.choose(2, people, arm).tolist():
             return
     pytest.fail("the moving arm was not looked at within eight frames")
 

@@ -29,7 +29,7 @@ def raised_at(points, clothes):
 
 def two_customers(red_at=(2, 0.5), blue_at=(2, -0.5), config=None, silent_frames=0):
     """Somebody in red and somebody in blue, known for a second; then nothing is measured."""
-    tracker = PersonTracker(config or Config())
+    tracker = PersonTracker(config or Config(appearance_weight=1.0))
     for number in range(10):
         tracker.step(number * 10**8, raised_at([red_at, blue_at], [RED, BLUE]), view=NOBODY)
     for number in range(10, 10 + silent_frames):
@@ -50,7 +50,7 @@ def caller(tracker, clothes, point=(2, 0), frame=40, count=2):
 def test_of_two_who_are_as_near_the_one_in_the_same_clothes_has_raised_the_hand(
     clothes, owner, association
 ):
-    config = Config(association=association)
+    config = Config(association=association, appearance_weight=1.0)
     tracker = two_customers(config=config, silent_frames=30)
     assert caller(tracker, clothes) == [owner]
 

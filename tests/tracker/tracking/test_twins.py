@@ -22,7 +22,7 @@ def silent_and_seen(apart_m=0.3, clothes=(RED, RED)):
 
 def merged(config=None, **changes):
     people = silent_and_seen(**changes)
-    return merge_twins(people, np.array([False, True]), config or Config())
+    return merge_twins(people, np.array([False, True]), config or Config(appearance_weight=1.0))
 
 
 def test_the_older_identity_goes_on_in_the_younger_one_s_place():
