@@ -246,12 +246,12 @@ class Config(BaseModel):
         group="tracking", live=True,
     )  # fmt: skip
     association: Literal["hungarian", "jpda"] = _parameter(
-        "hungarian", "Whose measurement is it? hungarian: the most likely one-to-one assignment; "
-        "jpda: every measurement in the gate, by its probability.",
+        "jpda", "Whose measurement is it? jpda: every measurement in the gate counts by its "
+        "probability; hungarian: the most likely one-to-one assignment, somewhat cheaper.",
         group="tracking", live=True,
     )  # fmt: skip
     acceleration_density: float = _parameter(
-        0.3, "Process noise: power spectral density of the acceleration of people who walk.",
+        0.6, "Process noise: power spectral density of the acceleration of people who walk.",
         unit="m^2/s^3", group="tracking", live=True, gt=0.0, le=100.0,
     )  # fmt: skip
     stand_speed_std_mps: float = _parameter(
@@ -259,7 +259,7 @@ class Config(BaseModel):
         unit="m/s", group="tracking", live=True, gt=0.0, le=2.0,
     )  # fmt: skip
     stand_duration_s: float = _parameter(
-        10.0, "`motion: imm`: how long people stand, on average ...",
+        3.0, "`motion: imm`: how long people stand, on average ...",
         unit="s", group="tracking", live=True, gt=0.1, le=3600.0,
     )  # fmt: skip
     walk_duration_s: float = _parameter(
@@ -281,7 +281,8 @@ class Config(BaseModel):
         unit="s", group="tracking", live=True, ge=0.0, le=60.0,
     )  # fmt: skip
     gate_probability: float = _parameter(
-        0.99, "Share of true measurements that the gate lets through.",
+        0.9999, "Share of true measurements that the gate lets through; people start and turn at "
+        "once, so that a narrow gate loses them.",
         group="tracking", live=True, gt=0.5, lt=1.0,
     )  # fmt: skip
     innovation_floor_m: float = _parameter(
@@ -299,7 +300,7 @@ class Config(BaseModel):
         group="tracking", live=True, ge=0.0, le=10.0,
     )  # fmt: skip
     newcomer_density: float = _parameter(
-        0.02, "Measurements of nobody known, false ones and new customers', per frame and area.",
+        0.005, "Measurements of nobody known, false ones and new customers', per frame and area.",
         unit="1/m^2", group="tracking", live=True, gt=0.0, le=10.0,
     )  # fmt: skip
     confirmation: Literal["m_of_n", "existence"] = _parameter(
@@ -320,7 +321,7 @@ class Config(BaseModel):
         unit="frames", group="tracking", live=True, ge=1, le=100,
     )  # fmt: skip
     delete_after_s: float = _parameter(
-        3.0, "A customer whom neither hand nor scan has shown for so long, though in view, is "
+        2.0, "A customer whom neither hand nor scan has shown for so long, though in view, is "
         "gone.",
         unit="s", group="tracking", live=True, gt=0.0, le=3600.0,
     )  # fmt: skip

@@ -32,7 +32,7 @@ from tracker.tracking.twins import merge_twins
 from tracker.tracking.view import View, visibility
 
 #: Of a raised hand, the chance that one counts whose owner had it down in the last frame (guess).
-_RAISES_AGAIN = 0.3
+_RAISES_AGAIN = 0.5
 #: Nobody is ever certain to be detected, or certain not to be.
 _DETECTION_MIN = 0.02
 
