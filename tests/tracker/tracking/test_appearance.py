@@ -23,13 +23,21 @@ HISTOGRAMS = st.lists(
 ).map(np.array)
 
 
+#: Settings of their own, whatever the defaults are.
+CLOTHED = Config(
+    appearance_weight=1.0, association="hungarian", acceleration_density=0.3,
+    stand_duration_s=10.0, gate_probability=0.99, newcomer_density=0.02, delete_after_s=3.0,
+)  # fmt: skip
+NAKED = CLOTHED.replace(appearance_weight=0.0)
+
+
 def raised_at(points, clothes):
     return Measurements.cartesian(np.array(points, float), NOISE, appearance=np.array(clothes))
 
 
 def two_customers(red_at=(2, 0.5), blue_at=(2, -0.5), config=None, silent_frames=0):
     """Somebody in red and somebody in blue, known for a second; then nothing is measured."""
-    tracker = PersonTracker(config or Config(appearance_weight=1.0))
+    tracker = PersonTracker(config or CLOTHED)
     for number in range(10):
         tracker.step(number * 10**8, raised_at([red_at, blue_at], [RED, BLUE]), view=NOBODY)
     for number in range(10, 10 + silent_frames):
@@ -50,14 +58,13 @@ def caller(tracker, clothes, point=(2, 0), frame=40, count=2):
 def test_of_two_who_are_as_near_the_one_in_the_same_clothes_has_raised_the_hand(
     clothes, owner, association
 ):
-    config = Config(association=association, appearance_weight=1.0)
+    config = CLOTHED.replace(association=association)
     tracker = two_customers(config=config, silent_frames=30)
     assert caller(tracker, clothes) == [owner]
 
 
 def test_without_weight_the_nearer_one_has_raised_it_whatever_the_clothes():
-    config = Config(appearance_weight=0.0)
-    tracker = two_customers(config=config, silent_frames=30)
+    tracker = two_customers(config=NAKED, silent_frames=30)
     assert caller(tracker, RED, point=(2, -0.35)) == [2]
 
 
@@ -84,7 +91,7 @@ def other_hands(tracker, clothes):
     "clothes", [UNKNOWN, [0, 0, 0], [0.2, 0.9, -0.1], [5, 3, 1], [np.inf] * 3]
 )
 def test_unknown_clothes_change_nothing(clothes):
-    without = other_hands(two_customers(config=Config(appearance_weight=0.0)), [RED, BLUE])
+    without = other_hands(two_customers(config=NAKED), [RED, BLUE])
     unknown = other_hands(two_customers(), [clothes, clothes])
     np.testing.assert_array_equal(unknown.mean, without.mean)
     np.testing.assert_array_equal(unknown.covariance, without.covariance)
@@ -93,8 +100,8 @@ def test_unknown_clothes_change_nothing(clothes):
 
 def test_the_same_clothes_on_everybody_prefer_nobody():
     tracks = []
-    for weight in (0.0, 1.0):
-        tracker = PersonTracker(Config(appearance_weight=weight))
+    for config in (NAKED, CLOTHED):
+        tracker = PersonTracker(config)
         for number in range(10):
             points = [(2, 0.5), (2, -0.5)]
             tracker.step(number * 10**8, raised_at(points, [RED, RED]), view=NOBODY)
@@ -106,7 +113,7 @@ def test_the_same_clothes_on_everybody_prefer_nobody():
 def test_somebody_else_s_clothes_make_a_newcomer():
     ids = []
     for clothes in (RED, GREEN):
-        tracker = PersonTracker()
+        tracker = PersonTracker(CLOTHED)
         for number in range(10):
             tracker.step(number * 10**8, raised_at([(2, 1)], [RED]), view=NOBODY)
         tracks = tracker.step(40 * 10**8, raised_at([(2, 1.5)], [clothes]), view=NOBODY)

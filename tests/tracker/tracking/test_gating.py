@@ -6,7 +6,7 @@ from tracker.tracking.filter import innovations
 from tracker.tracking.gating import find_pairs, gate_limit
 from tracker.tracking.modes import Belief
 
-CONFIG = Config(motion="cv", outlier_dof=0.0, innovation_floor_m=0.0)
+CONFIG = Config(motion="cv", outlier_dof=0.0, innovation_floor_m=0.0, gate_probability=0.99)
 
 
 @pytest.fixture
