@@ -36,6 +36,10 @@ SAME_PLACE_OVERLAP = 0.5
 #: So many images are remembered for expected places. Older ones and those where nobody has looked
 #: yet need it alike: windows that wander, with a robot that turns, must not starve the rest.
 NEW_AGE = 12
+#: A window around somebody sways by up to this share of its width to either side from look to
+#: look: a hand far from the body is not cut off each time, and what one cut hides another shows.
+SWAY = 0.2
+_GOLDEN = 0.618  # steps that spread evenly, whoever's turn it is
 
 
 class SearchPlan:
@@ -48,7 +52,7 @@ class SearchPlan:
     def __init__(self, image_size: tuple[int, int]) -> None:
         self._size = image_size
         self._rotation = rotation_windows(*image_size)
-        self._turn = 0
+        self._turn = self._looks = 0
         # As if the rotation had been going on: ages that are all alike would come due all at once.
         self._rotation_turn = np.arange(-len(self._rotation), 0)
         self._lately: deque[tuple[int, FloatArray]] = deque()
@@ -86,8 +90,18 @@ class SearchPlan:
             self._lately.append((self._turn, places[place]))
             if place < tiles:
                 self._rotation_turn[place] = self._turn
-        windows: IntArray = places[chosen].round().astype(np.int64)
-        return windows
+        windows = places[chosen]
+        around = np.flatnonzero(np.array(chosen) >= tiles)
+        windows[around] += self._sway(windows[around])
+        whole_pixels: IntArray = clip_boxes(windows, self._size).round().astype(np.int64)
+        return whole_pixels
+
+    def _sway(self, windows: FloatArray) -> FloatArray:
+        """How far the windows around people move this time, shape (W, 4)."""
+        step = (self._looks + np.arange(len(windows))) * _GOLDEN % 1.0
+        self._looks += len(windows)
+        shift = (2.0 * step - 1.0) * SWAY * (windows[:, 2] - windows[:, 0])
+        return shift[:, None] * [1.0, 0.0, 1.0, 0.0]
 
     def _ages(self, places: FloatArray) -> FloatArray:
         """Shape (P,): images since any window at the same place was searched."""

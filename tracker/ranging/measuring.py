@@ -47,8 +47,8 @@ def measure_people(
         people: From `scan_people`, where that has been asked already.
 
     Returns:
-        First one row for each hand, then the clusters that no raised hand has claimed and that are
-        no background.
+        First one row for each hand, then the clusters that no hand has claimed and that are no
+        background.
     """
     rays = hand_rays(hands, camera, fixed_from_camera, config)
     pair = pair_hands(hands)
@@ -89,7 +89,8 @@ def measure_people(
         background.free(people.xy_m[callers])
     if not sustain or not config.scan_sustains or len(people) == 0:
         return from_hands
-    free = np.setdiff1d(np.flatnonzero(~is_background), callers)
+    # Whom a hand stands for, up or not, is not measured twice: the second would be a twin.
+    free = np.setdiff1d(np.flatnonzero(~is_background), claimed[seen])
     from_scan = _body_measurements(
         people.xy_m[free], rays.origin, config, raised=False, person=free, hand=-1
     )
