@@ -165,8 +165,60 @@ class Config(BaseModel):
         group="perception", live=True, ge=1, le=64,
     )  # fmt: skip
     inference_threads: int = _parameter(
-        2, "Processor threads for the hand models.",
+        2, "Processor threads for the models.",
         group="perception", ge=1, le=32,
+    )  # fmt: skip
+    execution_provider: Literal["cpu", "cuda", "tensorrt", "openvino", "coreml", "auto"] = (
+        _parameter(
+            "cpu", "Where ONNX Runtime runs the models; anything but cpu needs the build of "
+            "onnxruntime that has it. auto: the first of cuda, coreml, openvino and cpu that is "
+            "there.",
+            group="perception",
+        )
+    )  # fmt: skip
+
+    # What finds hands, and the second opinion of body poses.
+    detector: Literal["hands", "pose", "mediapipe"] = _parameter(
+        "hands", "What finds raised hands: hands (MediaPipe's hand models on ONNX Runtime), pose "
+        "(the arms of body poses) or mediapipe (an installed mediapipe 0.10, as it is).",
+        group="pose",
+    )  # fmt: skip
+    pose_model: str = _parameter(
+        "", "ONNX file of a pose model of your own (RTMO, RTMPose, MoveNet MultiPose or "
+        "YOLO-pose); empty takes MediaPipe's.",
+        group="pose",
+    )  # fmt: skip
+    pose_opinion: Literal["none", "veto", "full"] = _parameter(
+        "none", "What body poses say about the hands found: none (they are not asked), veto (a "
+        "hand at its owner's head is not up, and the LiDAR is asked about the torso) or full (an "
+        "arm that is up is a raised hand, too, where no hand was found).",
+        group="pose",
+    )  # fmt: skip
+    pose_search_period: int = _parameter(
+        2, "`pose_opinion`: people are searched for in one strip of every so many processed "
+        "images.",
+        unit="frames", group="pose", live=True, ge=1, le=1000,
+    )  # fmt: skip
+    pose_reads_per_frame: int = _parameter(
+        1, "`pose_opinion`: people whose pose is read anew in an image, those most due first.",
+        group="pose", live=True, ge=1, le=64,
+    )  # fmt: skip
+    pose_confidence: float = _parameter(
+        0.5, "Score from which a pose model believes in a person.",
+        group="pose", live=True, gt=0.0, lt=1.0,
+    )  # fmt: skip
+    pose_raised_threshold: float = _parameter(
+        0.3, "How far a wrist must be above its shoulder.",
+        unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
+    )  # fmt: skip
+    pose_head_clearance: float = _parameter(
+        0.6, "A wrist nearer than this to nose, eyes or ears is not up, but at the head.",
+        unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
+    )  # fmt: skip
+    hand_head_clearance: float = _parameter(
+        1.8, "A hand whose fingers' roots are nearer than this to its owner's nose, eyes or ears "
+        "is not up, but at the head.",
+        unit="palm lengths", group="pose", live=True, ge=0.0, le=10.0,
     )  # fmt: skip
 
     # Ranging.
@@ -214,6 +266,11 @@ class Config(BaseModel):
     )  # fmt: skip
     hand_offset_std_m: float = _parameter(
         0.2, "How far a raised hand stands beside the body, as standard deviation.",
+        unit="m", group="ranging", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+    torso_offset_std_m: float = _parameter(
+        0.08, "Where the body's pose is known: how far its legs stand beside the middle of "
+        "shoulders and hips, as standard deviation.",
         unit="m", group="ranging", live=True, ge=0.0, le=1.0,
     )  # fmt: skip
     wrist_std_px: float = _parameter(

@@ -18,6 +18,7 @@ GROUP_TITLES = {
     "specification": "The specification's table 1",
     "frames": "Frames and camera",
     "perception": "Perception: image to hands",
+    "pose": "Detectors and the second opinion of poses",
     "ranging": "Ranging: scan to distances",
     "tracking": "Tracking: measurements to customers",
     "selection": "Selection and poses",

@@ -129,6 +129,8 @@ class Hands:
         raised: Shape (H,), bool: the raise rule's verdict on this one image.
         raise_measure: Shape (H,): what the rule compared with its threshold (image heights for the
             `image` rule, palm lengths for the `palm` rule).
+        torso_px: Shape (H, 2): the middle of shoulders and hips of whose hand it is; NaN where
+            that is not known. None means that of no hand.
     """
 
     landmarks_px: FloatArray
@@ -136,13 +138,17 @@ class Hands:
     right: FloatArray
     raised: BoolArray
     raise_measure: FloatArray
+    torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
 
     def __post_init__(self) -> None:
+        if self.torso_px is None:
+            object.__setattr__(self, "torso_px", np.full((len(self.landmarks_px), 2), np.nan))
+        _freeze(self, "torso_px", self.torso_px, np.float64)
         _freeze(self, "landmarks_px", self.landmarks_px, np.float64)
         for name in ("score", "right", "raise_measure"):
             _freeze(self, name, getattr(self, name), np.float64)
         _freeze(self, "raised", self.raised, np.bool_)
-        _check_rows(self, len(self.landmarks_px), landmarks_px=(21, 2))
+        _check_rows(self, len(self.landmarks_px), landmarks_px=(21, 2), torso_px=(2,))
 
     def __len__(self) -> int:
         return len(self.score)
@@ -156,10 +162,25 @@ class Hands:
         nothing = np.zeros(0)
         return Hands(np.zeros((0, 21, 2)), nothing, nothing, nothing.astype(bool), nothing)
 
+    @staticmethod
+    def concatenate(*parts: Hands) -> Hands:
+        """Join batches of one image, rows in the order given."""
+        return Hands(
+            **{
+                item.name: np.concatenate([getattr(part, item.name) for part in parts])
+                for item in fields(Hands)
+            }
+        )
+
     @property
     def wrist_px(self) -> FloatArray:
         """Shape (H, 2)."""
         return self.landmarks_px[:, 0]
+
+    @property
+    def is_owned(self) -> BoolArray:
+        """Shape (H,): the torso of whose hand it is is known."""
+        return np.asarray(np.isfinite(self.torso_px).all(axis=-1))
 
     @property
     def length_px(self) -> FloatArray:

@@ -44,7 +44,7 @@ class Pipeline:
 
     Args:
         config: Every parameter.
-        detector: Finds hands; by default MediaPipe's models on ONNX Runtime.
+        detector: Finds hands; by default what `config.detector` names.
         transforms: Knows where frames were; by default a buffer of the project's own. A node may
             pass one around tf2's.
     """
@@ -57,9 +57,9 @@ class Pipeline:
     ) -> None:
         self.config = config or Config()
         if detector is None:
-            from tracker.perception import HandFinder
+            from tracker.perception import open_detector
 
-            detector = HandFinder(self.config)
+            detector = open_detector(self.config)
         self.detector = detector
         self.tracker = PersonTracker(self.config)
         self.transforms: Transforms = transforms or TransformBuffer()

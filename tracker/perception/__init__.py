@@ -1,19 +1,24 @@
-"""Image in, hands out: model files, palm search, landmarks, following, raise rules, drawing."""
+"""Image in, hands out: model files, search, landmarks, following, raise rules, poses, drawing."""
 
 from typing import TYPE_CHECKING, Any
 
-from tracker.perception.detector import HandDetector
+from tracker.perception.detector import BodyDetector, HandDetector
 
 if TYPE_CHECKING:
     from tracker.perception.hand_finder import HandFinder
+    from tracker.perception.opening import open_detector
 
-__all__ = ["HandDetector", "HandFinder"]
+__all__ = ["BodyDetector", "HandDetector", "HandFinder", "open_detector"]
 
 
 def __getattr__(name: str) -> Any:
-    """`HandFinder` brings OpenCV and ONNX Runtime along; other detectors need neither."""
+    """These bring OpenCV and ONNX Runtime along; other detectors need neither."""
     if name == "HandFinder":
         from tracker.perception.hand_finder import HandFinder
 
         return HandFinder
+    if name == "open_detector":
+        from tracker.perception.opening import open_detector
+
+        return open_detector
     raise AttributeError(f"module 'tracker.perception' has no attribute {name!r}")

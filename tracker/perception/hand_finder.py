@@ -22,11 +22,13 @@ class HandFinder:
     """MediaPipe's hand pipeline on ONNX Runtime: search, landmarks, following, raise rule.
 
     Args:
-        config: `model_complexity`, `inference_threads` and the parameters of the perception group.
+        config: `model_complexity`, `inference_threads`, `execution_provider` and the parameters
+            of the perception group.
         store: Where the model files live; None takes the default place.
 
     Raises:
         ModelFileError: A model file is absent or unusable; the message says how to fetch it.
+        ConfigError: ONNX Runtime has no such execution provider.
 
     Source: Zhang et al., "MediaPipe Hands: On-device Real-time Hand Tracking", 2020.
     """
@@ -82,17 +84,18 @@ class HandFinder:
             ModelFileError: Other models are needed and cannot be opened; nothing has changed then.
         """
         old = self._config
-        if (config.model_complexity, config.inference_threads) != (
-            old.model_complexity,
-            old.inference_threads,
-        ):
+        engine = ("model_complexity", "inference_threads", "execution_provider")
+        if any(getattr(config, name) != getattr(old, name) for name in engine):
             self._follower = self._open(config)
         self._config = config
 
     def _open(self, config: Config) -> HandFollower:
         complexity, threads = config.model_complexity, config.inference_threads
+        provider = config.execution_provider
         return HandFollower(
-            PalmSearch.open(self._store, complexity, threads=1),
-            PalmSearch.open(self._store, complexity, threads=1, input_px=PIECE_INPUT_PX),
-            LandmarkReader.open(self._store, complexity, threads=threads),
+            PalmSearch.open(self._store, complexity, threads=1, provider=provider),
+            PalmSearch.open(
+                self._store, complexity, threads=1, provider=provider, input_px=PIECE_INPUT_PX
+            ),
+            LandmarkReader.open(self._store, complexity, threads=threads, provider=provider),
         )

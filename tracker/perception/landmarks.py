@@ -14,7 +14,7 @@ import onnxruntime
 from tracker.containers import FloatArray, ImageArray
 from tracker.perception.models import ModelStore
 from tracker.perception.pictures import cut_out
-from tracker.perception.regions import Regions
+from tracker.perception.regions import Regions, image_from_input
 from tracker.perception.sessions import open_session
 
 INPUT_PX = 224
@@ -73,17 +73,22 @@ class LandmarkReader:
         self._pool = ThreadPoolExecutor(threads, "hand-models") if threads > 1 else None
 
     @staticmethod
-    def open(store: ModelStore, complexity: int, *, threads: int) -> LandmarkReader:
+    def open(
+        store: ModelStore, complexity: int, *, threads: int, provider: str = "cpu"
+    ) -> LandmarkReader:
         """The lite (0) or full (1) landmark model of a store.
 
         Raises:
-            ModelFileError: As `open_session`.
+            ModelFileError, ConfigError: As `open_session`.
         """
         name = "hand_landmark_full" if complexity else "hand_landmark_lite"
-        abreast = open_session(store, name, threads=1, fixed_sizes={"batch": 1})
+        sizes = {"batch": 1}
+        abreast = open_session(store, name, threads=1, fixed_sizes=sizes, provider=provider)
         alone = abreast
         if threads > 1:
-            alone = open_session(store, name, threads=threads, fixed_sizes={"batch": 1})
+            alone = open_session(
+                store, name, threads=threads, fixed_sizes=sizes, provider=provider
+            )
         return LandmarkReader(alone, abreast, threads)
 
     def read(self, bgr: ImageArray, regions: Regions) -> Landmarks:
@@ -108,7 +113,7 @@ class LandmarkReader:
         Returns:
             The landmarks, and what the calls returned.
         """
-        to_image = _image_from_input(regions)
+        to_image = image_from_input(regions, INPUT_PX)
         if self._pool is None or len(regions) + len(calls) < 2:
             returned = [call() for call in calls]
             answers = [_look(self._alone, bgr, matrix) for matrix in to_image]
@@ -139,12 +144,3 @@ def _look(
         float(presence[0, 0]),
         float(right[0, 0]),
     )
-
-
-def _image_from_input(regions: Regions) -> FloatArray:
-    """Shape (R, 2, 3): affine maps from pixels of the model's input to those of the image."""
-    scale = regions.side_px / INPUT_PX
-    cos, sin = scale * np.cos(regions.rotation_rad), scale * np.sin(regions.rotation_rad)
-    linear = np.stack([np.stack([cos, -sin], -1), np.stack([sin, cos], -1)], axis=1)
-    corner = regions.center_px - linear.sum(axis=-1) * (INPUT_PX / 2)
-    return np.concatenate([linear, corner[:, :, None]], axis=-1)

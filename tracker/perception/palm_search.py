@@ -75,16 +75,22 @@ class PalmSearch:
 
     @staticmethod
     def open(
-        store: ModelStore, complexity: int, *, threads: int, input_px: int = 192
+        store: ModelStore,
+        complexity: int,
+        *,
+        threads: int,
+        input_px: int = 192,
+        provider: str = "cpu",
     ) -> PalmSearch:
         """The lite (0) or full (1) palm model of a store.
 
         Raises:
-            ModelFileError: As `open_session`.
+            ModelFileError, ConfigError: As `open_session`.
         """
         name = "palm_detection_full" if complexity else "palm_detection_lite"
         sizes = {"batch": 1, "height": input_px, "width": input_px}
-        return PalmSearch(open_session(store, name, threads=threads, fixed_sizes=sizes), input_px)
+        session = open_session(store, name, threads=threads, fixed_sizes=sizes, provider=provider)
+        return PalmSearch(session, input_px)
 
     def find(
         self,

@@ -7,10 +7,19 @@ from typing import Any, TypeAlias
 import cv2
 import numpy as np
 
-from tracker.containers import FloatArray, ImageArray
+from tracker.containers import CameraImage, FloatArray, ImageArray
 
 #: Shape (1, height, width, 3), RGB in [0, 1].
 ModelInput: TypeAlias = np.ndarray[Any, np.dtype[np.float32]]
+
+
+def continues(last: CameraImage, image: CameraImage) -> bool:
+    """Whether an image shows what came after another: the same camera, later, of the same size."""
+    return (
+        image.stamp_ns >= last.stamp_ns
+        and image.frame_id == last.frame_id
+        and image.bgr.shape == last.bgr.shape
+    )
 
 
 def shrink_picture(bgr: ImageArray, factor: int) -> ImageArray:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from tracker.containers import FloatArray
+from tracker.containers import BoolArray, FloatArray
 
 #: How much of the hand's own size a region takes in, and how far its center moves towards the
 #: fingers, in sizes. The landmark model was trained on regions of exactly these shapes (Zhang et
@@ -107,6 +108,23 @@ def upright_rotation(wrist_px: FloatArray, fingers_px: FloatArray) -> FloatArray
     return np.asarray(np.arctan2(along[:, 0], -along[:, 1]), dtype=np.float64)
 
 
+def image_from_input(regions: Regions, input_px: int) -> FloatArray:
+    """Affine maps from pixels of a model's square input to those of the image.
+
+    Args:
+        regions: What the model looks at.
+        input_px: Side of its input.
+
+    Returns:
+        Shape (R, 2, 3).
+    """
+    scale = regions.side_px / input_px
+    cos, sin = scale * np.cos(regions.rotation_rad), scale * np.sin(regions.rotation_rad)
+    linear = np.stack([np.stack([cos, -sin], -1), np.stack([sin, cos], -1)], axis=1)
+    corner = regions.center_px - linear.sum(axis=-1) * (input_px / 2)
+    return np.concatenate([linear, corner[:, :, None]], axis=-1)
+
+
 def overlap(first: Regions, second: Regions) -> FloatArray:
     """Intersection over union of every pair, as if the squares were not turned.
 
@@ -132,6 +150,19 @@ def box_overlap(first: FloatArray, second: FloatArray) -> FloatArray:
     union = _areas(first)[:, None] + _areas(second)[None, :] - common
     ratio: FloatArray = np.divide(common, union, out=np.zeros_like(common), where=union > 0.0)
     return ratio
+
+
+def first_of_each(same: BoolArray, order: Iterable[int]) -> BoolArray:
+    """Mask of the rows that are not the same as a row kept before them.
+
+    Args:
+        same: Shape (N, N), symmetric: pairs of rows that mean the same thing.
+        order: Every row once, the best first.
+    """
+    keep = np.zeros(len(same), dtype=bool)
+    for row in order:
+        keep[row] = not np.any(same[row] & keep)
+    return keep
 
 
 def _areas(boxes: FloatArray) -> FloatArray:

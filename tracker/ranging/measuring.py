@@ -115,9 +115,10 @@ def scan_people(
 def _hand_measurements(
     rays: HandRays, range_m: FloatArray, hands: Hands, pair: IntArray, config: Config
 ) -> Measurements:
-    """The hand's own ray; the body stands somewhere beside it, by `hand_offset_std_m`."""
+    """The hand's own ray; the body stands somewhere beside it, closer to that of its torso."""
     supposed_m = np.where(np.isnan(range_m), config.unknown_range_m, range_m)
-    offset_std = np.arctan2(config.hand_offset_std_m, np.maximum(supposed_m, 0.3))
+    offset_m = np.where(hands.is_owned, config.torso_offset_std_m, config.hand_offset_std_m)
+    offset_std = np.arctan2(offset_m, np.maximum(supposed_m, 0.3))
     return Measurements.polar(
         rays.bearing_rad,
         range_m,

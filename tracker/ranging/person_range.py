@@ -19,6 +19,8 @@ from tracker.ranging.rays import HandRays
 _PALM_LENGTH_M = 0.095
 #: How far a raised hand stands beside the body's middle, and how much that varies (guesses).
 _BESIDE_M, _BESIDE_STD_M = 0.3, 0.2
+#: The same of the middle of shoulders and hips, which a lean moves (guess).
+_TORSO_STD_M = 0.08
 #: Relative spread of a range told from a palm's size, since people differ (guess) ...
 _RANGE_SPREAD = 0.2
 #: ... and noise of a landmark, which tells on small palms.
@@ -62,7 +64,8 @@ def owners(
     along, across = ray_coordinates(people.xy_m, rays.origin[:2], heading)
     beside = (along > 0.0) & (np.abs(across) <= arm_reach_m)
     offset, range_m = _owner_offset(hands), _range_from_size(hands, camera)
-    misfit = ((across - offset[:, None]) / _BESIDE_STD_M) ** 2
+    beside_m = np.where(hands.is_owned, _TORSO_STD_M, _BESIDE_STD_M)[:, None]
+    misfit = ((across - offset[:, None]) / beside_m) ** 2
     palm_px = _palm_px(hands)[:, None]
     spread = np.hypot(_RANGE_SPREAD, _LANDMARK_STD_PX / palm_px)
     of_size = (np.log(np.maximum(along, 0.05) / range_m[:, None]) / spread) ** 2
@@ -77,11 +80,13 @@ def _owner_offset(hands: Hands) -> FloatArray:
     """How far to the left of the hand its owner should stand, shape (H,), meters.
 
     Whether it is a left or a right hand, seen from the front or from behind: held up beside the
-    head, its thumb is on the head's side. A hand seen edge-on tells nothing.
+    head, its thumb is on the head's side. A hand seen edge-on tells nothing. Where the ray is the
+    torso's, the owner stands on it.
     """
     palm = _palm_px(hands)
     toward = hands.landmarks_px[:, _THUMB_TIP, 0] - hands.landmarks_px[:, _PINKY_ROOT, 0]
-    return np.asarray(-_BESIDE_M * np.clip(toward / palm, -1.0, 1.0))
+    beside = -_BESIDE_M * np.clip(toward / palm, -1.0, 1.0)
+    return np.asarray(np.where(hands.is_owned, 0.0, beside))
 
 
 def _range_from_size(hands: Hands, camera: CameraModel) -> FloatArray:

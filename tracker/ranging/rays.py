@@ -37,7 +37,9 @@ class HandRays:
 def hand_rays(
     hands: Hands, camera: CameraModel, fixed_from_camera: RigidTransform, config: Config
 ) -> HandRays:
-    """Turn each wrist's pixel into a bearing in the plane in which the robot drives.
+    """Turn each hand's pixel into a bearing in the plane in which the robot drives.
+
+    The pixel is the middle of its owner's torso where a pose has told it, the wrist elsewhere.
 
     The pixel is undistorted, its ray turned by the camera's whole attitude and projected onto the
     plane. For a level camera that is minus the angle of equation 1 (plus, with
@@ -49,7 +51,7 @@ def hand_rays(
         fixed_from_camera: The camera with body axes (x forward) in the fixed frame; `body_pose`.
         config: `bearing_convention` and the wrist's noise, `wrist_noise_px`.
     """
-    rays = camera.rays(hands.wrist_px)
+    rays = camera.rays(np.where(hands.is_owned[:, None], hands.torso_px, hands.wrist_px))
     if config.bearing_convention == "spec":
         rays = rays * np.array([1.0, -1.0, 1.0])
     level = fixed_from_camera.rotate(rays)

@@ -1,0 +1,161 @@
+"""Where are people's heads, shoulders and arms? Bodies as any pose model tells them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from tracker.containers import BoolArray, FloatArray
+from tracker.errors import ShapeError
+from tracker.perception.regions import first_of_each
+
+#: Points seen with less are taken for unknown; a guess between 0.3, usual for COCO's models, and
+#: MediaPipe's 0.5.
+VISIBLE_FROM = 0.4
+#: Grown people's shoulders, joint to joint, against their trunk from shoulders to hips: seen from
+#: the side a person keeps the trunk's length (guess from anthropometric tables).
+_SHOULDERS_PER_TRUNK = 0.7
+#: Bodies whose points are closer than this, on average, are one person's (guess).
+_SAME_BODY_SHOULDERS = 0.5
+
+
+class Joint(IntEnum):
+    """The points of a body, in the order of the COCO data set; left is the person's own left."""
+
+    NOSE = 0
+    LEFT_EYE = 1
+    RIGHT_EYE = 2
+    LEFT_EAR = 3
+    RIGHT_EAR = 4
+    LEFT_SHOULDER = 5
+    RIGHT_SHOULDER = 6
+    LEFT_ELBOW = 7
+    RIGHT_ELBOW = 8
+    LEFT_WRIST = 9
+    RIGHT_WRIST = 10
+    LEFT_HIP = 11
+    RIGHT_HIP = 12
+    LEFT_KNEE = 13
+    RIGHT_KNEE = 14
+    LEFT_ANKLE = 15
+    RIGHT_ANKLE = 16
+
+
+HEAD = [Joint.NOSE, Joint.LEFT_EYE, Joint.RIGHT_EYE, Joint.LEFT_EAR, Joint.RIGHT_EAR]
+SHOULDERS = [Joint.LEFT_SHOULDER, Joint.RIGHT_SHOULDER]
+ELBOWS = [Joint.LEFT_ELBOW, Joint.RIGHT_ELBOW]
+WRISTS = [Joint.LEFT_WRIST, Joint.RIGHT_WRIST]
+HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bodies:
+    """People found in one picture; row i of each array is the same person.
+
+    Attributes:
+        points_px: Shape (P, 17, 2), in the order of `Joint`: x to the right, y down, in the full
+            image.
+        visibility: Shape (P, 17): how sure the model is of each point, in [0, 1].
+        score: Shape (P,): how sure it is of the person, in [0, 1].
+        age_s: Shape (P,): how long ago the person was seen there; 0 for this very image.
+
+    Raises:
+        ShapeError: The arrays disagree in shape.
+    """
+
+    points_px: FloatArray
+    visibility: FloatArray
+    score: FloatArray
+    age_s: FloatArray
+
+    def __post_init__(self) -> None:
+        shapes = [np.shape(getattr(self, name)) for name in self.__slots__]
+        count = len(self.score)
+        if shapes != [(count, len(Joint), 2), (count, len(Joint)), (count,), (count,)]:
+            raise ShapeError(
+                f"Bodies disagree in shape: {shapes}; needed is (P, 17, 2) and so on."
+            )
+        for name in self.__slots__:
+            view = np.asarray(getattr(self, name), dtype=np.float64).view()
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+
+    def __len__(self) -> int:
+        return len(self.score)
+
+    def __getitem__(self, rows: Any) -> Bodies:
+        return replace(self, **{name: getattr(self, name)[rows] for name in self.__slots__})
+
+    @staticmethod
+    def seen_now(points_px: FloatArray, visibility: FloatArray, score: FloatArray) -> Bodies:
+        """Bodies of this very image."""
+        return Bodies(points_px, visibility, score, np.zeros(len(score)))
+
+    @staticmethod
+    def none() -> Bodies:
+        """Nobody at all."""
+        return Bodies.seen_now(np.zeros((0, 17, 2)), np.zeros((0, 17)), np.zeros(0))
+
+    @staticmethod
+    def concatenate(*parts: Bodies) -> Bodies:
+        """Join batches, rows in the order given."""
+        return Bodies(
+            *(np.concatenate([getattr(part, name) for part in parts]) for name in Bodies.__slots__)
+        )
+
+    def grown_older(self, passed_s: float) -> Bodies:
+        """The same people, as long after."""
+        return replace(self, age_s=self.age_s + passed_s)
+
+    @property
+    def is_visible(self) -> BoolArray:
+        """Shape (P, 17): points that may be relied upon."""
+        finite = np.isfinite(self.points_px).all(axis=-1)
+        return np.asarray(finite & (self.visibility >= VISIBLE_FROM))
+
+    @property
+    def torso_px(self) -> FloatArray:
+        """Shape (P, 2): the middle of shoulders and hips, of the shoulders where no hip is seen.
+
+        NaN where a shoulder is missing.
+        """
+        shoulders, hips = self._middle_of(SHOULDERS), self._middle_of(HIPS)
+        return np.where(np.isnan(hips), shoulders, (shoulders + hips) / 2)
+
+    @property
+    def shoulder_px(self) -> FloatArray:
+        """Shape (P,): the shoulders' width, the yardstick of a body; NaN where one is missing.
+
+        Somebody who stands sideways is measured by the trunk instead, where hips are seen.
+        """
+        shoulders, hips = self._middle_of(SHOULDERS), self._middle_of(HIPS)
+        width = 2.0 * np.linalg.norm(self.points_px[:, SHOULDERS[0]] - shoulders, axis=-1)
+        trunk = np.linalg.norm(hips - shoulders, axis=-1)
+        wider = np.fmax(width, _SHOULDERS_PER_TRUNK * trunk)
+        return np.where(wider > 0.0, wider, np.nan)
+
+    def _middle_of(self, joints: list[Joint]) -> FloatArray:
+        seen = self.is_visible[:, joints].all(axis=1, keepdims=True)
+        return np.where(seen, self.points_px[:, joints].mean(axis=1), np.nan)
+
+
+def same_people(first: Bodies, second: Bodies) -> BoolArray:
+    """Pairs of bodies that are one person's: the points that both show lie close together.
+
+    Returns:
+        Shape (F, S).
+    """
+    apart = np.linalg.norm(first.points_px[:, None] - second.points_px[None], axis=-1)
+    both = first.is_visible[:, None] & second.is_visible[None]
+    distance = np.where(both, apart, 0.0).sum(axis=-1) / np.maximum(both.sum(axis=-1), 1)
+    width = np.fmin(first.shoulder_px[:, None], second.shoulder_px[None])
+    return np.asarray(both.any(axis=-1) & (distance < _SAME_BODY_SHOULDERS * width))
+
+
+def one_row_each(bodies: Bodies) -> BoolArray:
+    """Mask of the rows that stand for a person: of several the freshest, then the surest."""
+    same = same_people(bodies, bodies)
+    return first_of_each(same, np.lexsort((-bodies.score, bodies.age_s)).tolist())

@@ -1,0 +1,107 @@
+"""How does a body's arm become a hand that the rest of the tracker understands?"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.config import Config
+from tracker.containers import BoolArray, CameraImage, FloatArray, Hands
+from tracker.perception.bodies import ELBOWS, WRISTS, Bodies
+from tracker.perception.detector import BodyDetector
+from tracker.perception.pose_rules import judge_arms
+from tracker.perception.raise_rules import judge_raised
+
+#: Adults' palms, from the wrist to the middle finger's root, against the width of the shoulders
+#: (guess from anthropometric tables).
+_PALM_PER_SHOULDERS = 0.26
+#: An open hand in palm lengths from the wrist, (toward the thumb, along the fingers); landmarks in
+#: MediaPipe's order (guess at its proportions).
+_OPEN_HAND = np.array(
+    [
+        (0.0, 0.0),
+        (0.35, 0.2), (0.6, 0.5), (0.75, 0.8), (0.85, 1.05),
+        (0.25, 1.0), (0.28, 1.45), (0.29, 1.7), (0.3, 1.9),
+        (0.0, 1.0), (0.0, 1.5), (0.0, 1.8), (0.0, 2.0),
+        (-0.22, 0.95), (-0.25, 1.4), (-0.26, 1.68), (-0.27, 1.88),
+        (-0.42, 0.85), (-0.48, 1.2), (-0.51, 1.4), (-0.54, 1.58),
+    ]
+)  # fmt: skip
+
+
+class PoseHands:
+    """`detector: pose`: every wrist of a pose model is a hand, raised where the arm is.
+
+    Args:
+        bodies: The pose model.
+        config: The pose group.
+    """
+
+    def __init__(self, bodies: BodyDetector, config: Config) -> None:
+        self._bodies = bodies
+        self._config = config
+
+    def find(self, image: CameraImage) -> Hands:
+        """Hands at the wrists seen in this very image, in pixels of the full image."""
+        bodies = self._bodies.find(image)
+        bodies = bodies[bodies.age_s == 0.0]
+        arms = bodies.is_visible[:, WRISTS] & np.isfinite(bodies.shoulder_px)[:, None]
+        return draw_hands(bodies, arms, (image.width, image.height), self._config)
+
+    def reset(self) -> None:
+        """Forget the people of earlier images."""
+        self._bodies.reset()
+
+    def configure(self, config: Config) -> None:
+        """Take over changed parameters, from the next image on."""
+        self._config = config
+        self._bodies.configure(config)
+
+
+def draw_hands(
+    bodies: Bodies, arms: BoolArray, image_size: tuple[int, int], config: Config
+) -> Hands:
+    """Schematic open hands at the wrists of some arms.
+
+    Only the wrist is known. The rest of the landmarks continues the forearm, in the size that the
+    shoulders suggest, so that ranging and drawing find what they know from other hands.
+
+    Args:
+        bodies: Who is there.
+        arms: Shape (P, 2), left arm first: which arms; their wrists are visible.
+        image_size: Width and height of the picture in pixels.
+        config: The pose group, and `raise_rule` for what `raise_measure` means.
+
+    Returns:
+        One row for each arm, person by person, with the arm's verdict.
+    """
+    person, side = np.nonzero(arms)
+    wrist = bodies.points_px[person, np.array(WRISTS)[side]]
+    fingers = _fingers_direction(bodies)[person, side]
+    palm_px = _PALM_PER_SHOULDERS * bodies.shoulder_px[person]
+    torso = bodies.torso_px[person]
+    # Whether palm or back shows is not known; the thumb is on the body's side either way.
+    across = np.stack([-fingers[:, 1], fingers[:, 0]], axis=-1)
+    toward_body = np.sum(across * (torso - wrist), axis=-1) >= 0.0
+    across = np.where(toward_body[:, None], across, -across)
+    axes = np.stack([across, fingers], axis=1)
+    landmarks = wrist[:, None] + palm_px[:, None, None] * (_OPEN_HAND @ axes)
+    raised, _ = judge_arms(bodies, config)
+    _, measure = judge_raised(landmarks, image_size, config)
+    return Hands(
+        landmarks,
+        bodies.visibility[person, np.array(WRISTS)[side]],
+        side.astype(np.float64),
+        raised[person, side],
+        measure,
+        torso,
+    )
+
+
+def _fingers_direction(bodies: Bodies) -> FloatArray:
+    """Shape (P, 2, 2): unit vectors along the forearms; up where an elbow is not seen."""
+    along = bodies.points_px[:, WRISTS] - bodies.points_px[:, ELBOWS]
+    length = np.linalg.norm(along, axis=-1)
+    known = bodies.is_visible[:, ELBOWS] & (length > 1.0)
+    return np.where(
+        known[..., None], along / np.maximum(length, 1.0)[..., None], np.array([0.0, -1.0])
+    )

@@ -1,0 +1,74 @@
+"""Where are the joints of each person, and is it a person at all? MediaPipe's pose landmarks."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import onnxruntime
+
+from tracker.containers import FloatArray, ImageArray
+from tracker.perception.bodies import Bodies
+from tracker.perception.models import ModelStore
+from tracker.perception.pictures import cut_out
+from tracker.perception.regions import Regions, image_from_input
+from tracker.perception.sessions import open_session
+
+INPUT_PX = 256
+#: BlazePose's rows of the joints, in the order of `Joint`.
+_JOINT_ROWS = [0, 2, 5, 7, 8, 11, 12, 13, 14, 15, 16, 23, 24, 25, 26, 27, 28]
+#: Its rows that say where to look next: the middle of the hips and the circle around the person.
+_ALIGNMENT_ROWS = [33, 34]
+
+
+class PoseReader:
+    """The pose landmark model on one person after the other.
+
+    Args:
+        session: The opened model.
+    """
+
+    def __init__(self, session: onnxruntime.InferenceSession) -> None:
+        self._session = session
+
+    @staticmethod
+    def open(store: ModelStore, *, threads: int, provider: str) -> PoseReader:
+        """The pose landmark model of a store.
+
+        Raises:
+            ModelFileError, ConfigError: As `open_session`.
+        """
+        sizes = {"batch": 1}
+        return PoseReader(
+            open_session(
+                store, "pose_landmark_full", threads=threads, fixed_sizes=sizes, provider=provider
+            )
+        )
+
+    def read(self, bgr: ImageArray, regions: Regions) -> tuple[Bodies, FloatArray]:
+        """Look at each region of a picture.
+
+        Args:
+            bgr: Shape (height, width, 3), the full image.
+            regions: In its pixels; what lies outside of the picture repeats its edge.
+
+        Returns:
+            The bodies, and where to look for them next: shape (R, 2, 2), see
+            `regions_from_alignment`.
+        """
+        to_image = image_from_input(regions, INPUT_PX)
+        landmarks = np.zeros((len(regions), 39, 5))
+        score = np.zeros(len(regions))
+        for row, matrix in enumerate(to_image):
+            crop = cut_out(bgr, matrix, INPUT_PX, cv2.BORDER_REPLICATE)
+            points, presence = self._session.run(["landmarks", "presence"], {"image": crop})
+            landmarks[row], score[row] = points.reshape(39, 5), presence[0, 0]
+        points_px = landmarks[..., :2] @ to_image[:, :, :2].transpose(0, 2, 1)
+        points_px += to_image[:, None, :, 2]
+        # Both: hidden behind something, or outside of the picture.
+        visible = _probability(landmarks[..., 3]) * _probability(landmarks[..., 4])
+        bodies = Bodies.seen_now(points_px[:, _JOINT_ROWS], visible[:, _JOINT_ROWS], score)
+        return bodies, points_px[:, _ALIGNMENT_ROWS]
+
+
+def _probability(logits: FloatArray) -> FloatArray:
+    return np.asarray(1.0 / (1.0 + np.exp(-np.clip(logits, -100.0, 100.0))))

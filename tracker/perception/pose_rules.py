@@ -1,0 +1,107 @@
+"""Which arms are up, and which hands are only at the head? What a body says about its hands."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.config import Config
+from tracker.containers import BoolArray, FloatArray, Hands, IntArray
+from tracker.perception.bodies import HEAD, SHOULDERS, WRISTS, Bodies
+from tracker.perception.raise_rules import MIDDLE_ROOT, WRIST
+
+#: A hand belongs to the body with a wrist so close to its own, in widths of the shoulders: the
+#: pose model errs by a sixth of a hand, and the arm may have moved since (guess).
+_OWN_WRIST_SHOULDERS = 0.6
+
+
+def judge_arms(bodies: Bodies, config: Config) -> tuple[BoolArray, FloatArray]:
+    """Arms whose wrist is well above the shoulder, and not at the head.
+
+    A hand that holds a telephone, drinks or scratches has its wrist above the shoulder too, but
+    close to the face.
+
+    Args:
+        bodies: Who is there.
+        config: `pose_raised_threshold` and `pose_head_clearance`.
+
+    Returns:
+        Verdict and rise of the wrist above the shoulder in widths of the shoulders, each of shape
+        (P, 2), left arm first; an arm that is not seen is down and measures NaN.
+    """
+    seen, points = bodies.is_visible, bodies.points_px
+    width = bodies.shoulder_px[:, None]
+    rise_px = points[:, SHOULDERS, 1] - points[:, WRISTS, 1]
+    rise = np.where(seen[:, SHOULDERS] & seen[:, WRISTS], rise_px / width, np.nan)
+    head_px = np.stack([head_distance_px(bodies, points[:, wrist]) for wrist in WRISTS], axis=-1)
+    is_clear = ~(head_px < config.pose_head_clearance * width)
+    return (rise > config.pose_raised_threshold) & is_clear, rise
+
+
+def head_distance_px(bodies: Bodies, points_px: FloatArray) -> FloatArray:
+    """How far one point for each body is from its nose, eyes or ears, whichever is nearest.
+
+    Returns:
+        Shape (P,); infinite where nothing of the head is seen.
+    """
+    apart = np.linalg.norm(bodies.points_px[:, HEAD] - points_px[:, None], axis=-1)
+    return np.asarray(np.where(bodies.is_visible[:, HEAD], apart, np.inf).min(axis=1))
+
+
+def find_owners(hands: Hands, bodies: Bodies) -> IntArray:
+    """Whose hand is it? The body with the nearest wrist, if that is close enough.
+
+    Returns:
+        Shape (H,): rows of `bodies`; -1 where no body fits.
+    """
+    if len(bodies) == 0 or len(hands) == 0:
+        return np.full(len(hands), -1, dtype=np.int64)
+    distance = wrist_distance(hands, bodies).min(axis=-1)
+    owner = distance.argmin(axis=1)
+    close = distance[np.arange(len(hands)), owner] < _OWN_WRIST_SHOULDERS
+    return np.where(close, owner, -1)
+
+
+def arms_without_hand(hands: Hands, bodies: Bodies) -> BoolArray:
+    """Shape (P, 2): arms at whose wrist no hand was found, left arm first."""
+    return np.asarray(~(wrist_distance(hands, bodies) < _OWN_WRIST_SHOULDERS).any(axis=0))
+
+
+def wrist_distance(hands: Hands, bodies: Bodies) -> FloatArray:
+    """From each hand to each wrist of each body, in widths of its shoulders.
+
+    Returns:
+        Shape (H, P, 2), left arm first; infinite for wrists that are not seen.
+    """
+    wrists = bodies.points_px[:, WRISTS]
+    apart = np.linalg.norm(hands.wrist_px[:, None, None] - wrists[None], axis=-1)
+    usable = bodies.is_visible[:, WRISTS] & np.isfinite(bodies.shoulder_px)[:, None]
+    return np.where(usable, apart / bodies.shoulder_px[:, None], np.inf)
+
+
+def hands_at_head(
+    hands: Hands, bodies: Bodies, owner: IntArray, clearance_palms: float
+) -> BoolArray:
+    """Hands at their owner's head: they hold a telephone, drink, scratch.
+
+    Another one's head may well be behind a raised hand, and a wrist above the whole head is not
+    at it.
+
+    Args:
+        hands: What the hand models found.
+        bodies: Who is there.
+        owner: Shape (H,): rows of `bodies`, or -1.
+        clearance_palms: How far the fingers' roots must be from nose, eyes and ears, in palm
+            lengths.
+
+    Returns:
+        Shape (H,).
+    """
+    answer = np.zeros(len(hands), dtype=bool)
+    rows = np.flatnonzero(owner >= 0)
+    owners = bodies[owner[rows]]
+    wrist, knuckles = hands.wrist_px[rows], hands.landmarks_px[rows, MIDDLE_ROOT]
+    palm = np.linalg.norm(knuckles - hands.landmarks_px[rows, WRIST], axis=-1)
+    top = np.where(owners.is_visible[:, HEAD], owners.points_px[:, HEAD, 1], np.inf).min(axis=1)
+    close = head_distance_px(owners, knuckles) < clearance_palms * palm
+    answer[rows] = close & (wrist[:, 1] > top)
+    return answer

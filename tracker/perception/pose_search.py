@@ -1,0 +1,112 @@
+"""Where in a part of the picture are people? MediaPipe's pose detector."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import onnxruntime
+
+from tracker.containers import FloatArray, ImageArray
+from tracker.perception.anchors import make_anchors
+from tracker.perception.models import ModelStore
+from tracker.perception.palm_search import Window
+from tracker.perception.pictures import cut_out
+from tracker.perception.regions import Regions, box_overlap, first_of_each, upright_rotation
+from tracker.perception.sessions import open_session
+
+INPUT_PX = 224
+#: As `anchors.PALM_LAYERS`; the last three maps share stride 32.
+POSE_LAYERS = ((8, 2), (16, 2), (32, 6))
+#: How much larger than the circle around a person the landmark model's region is; it was trained
+#: so (Bazarevsky et al., "BlazePose", 2020).
+REGION_SCALE = 1.25
+#: Boxes that overlap more than this are the same person; MediaPipe's value.
+SAME_PERSON_OVERLAP = 0.3
+#: Rows of the model's key points: the middle of the hips, a point of the circle around the person.
+_HIPS, _CIRCLE = 0, 1
+
+
+class PoseSearch:
+    """The pose detector on a window of the picture.
+
+    Args:
+        session: The opened model.
+    """
+
+    def __init__(self, session: onnxruntime.InferenceSession) -> None:
+        self._session = session
+        self._anchors = make_anchors(INPUT_PX, POSE_LAYERS)
+
+    @staticmethod
+    def open(store: ModelStore, *, threads: int, provider: str) -> PoseSearch:
+        """The pose detector of a store.
+
+        Raises:
+            ModelFileError, ConfigError: As `open_session`.
+        """
+        sizes = {"batch": 1}
+        return PoseSearch(
+            open_session(
+                store, "pose_detection", threads=threads, fixed_sizes=sizes, provider=provider
+            )
+        )
+
+    def find(self, bgr: ImageArray, window: Window, confidence: float) -> Regions:
+        """The regions in which the people of a window stand, the surest first.
+
+        Args:
+            bgr: Shape (height, width, 3), the full image.
+            window: Left, top, width, height of the part to search, inside the picture.
+            confidence: Score from which a person counts.
+        """
+        left, top, width, height = window
+        side = max(width, height)
+        # The window in the middle of a black square.
+        per_input_px = side / INPUT_PX
+        origin = np.array([width - side, height - side]) / 2
+        back = np.array([[per_input_px, 0.0, origin[0]], [0.0, per_input_px, origin[1]]])
+        part = bgr[top : top + height, left : left + width]
+        square = cut_out(part, back, INPUT_PX, cv2.BORDER_CONSTANT) * np.float32(2) - np.float32(1)
+        boxes, logits = self._session.run(["boxes", "scores"], {"image": square})
+        keypoints = decode_people(boxes[0], logits[0, :, 0], self._anchors, confidence)
+        return regions_from_alignment(keypoints[:, :2] * per_input_px + origin + (left, top))
+
+
+def decode_people(
+    boxes: FloatArray, logits: FloatArray, anchors: FloatArray, confidence: float
+) -> FloatArray:
+    """Turn the model's rows into people, one row each.
+
+    Args:
+        boxes: Shape (A, 12): center, width, height, then 4 key points, all in pixels of the input;
+            center and key points relative to the anchor.
+        logits: Shape (A,).
+        anchors: Shape (A, 2), in pixels of the input.
+        confidence: Score from which a row counts.
+
+    Returns:
+        Key points of shape (P, 4, 2) in pixels of the input, the surest person first. The surest
+        of overlapping boxes stands for all: the landmark model aligns anew, so that averaging
+        them, as MediaPipe does, gains nothing.
+    """
+    from_logit = np.log(confidence / (1.0 - confidence))
+    sure = np.flatnonzero((logits >= from_logit) & np.all(np.isfinite(boxes), axis=-1))
+    sure = sure[np.argsort(-logits[sure], kind="stable")]
+    rows, anchor = boxes[sure].astype(np.float64), anchors[sure]
+    center, half = rows[:, :2] + anchor, rows[:, 2:4] / 2
+    corners = np.concatenate([center - half, center + half], axis=-1)
+    same = box_overlap(corners, corners) > SAME_PERSON_OVERLAP
+    keep = first_of_each(same, range(len(rows)))
+    return rows[keep, 4:].reshape(-1, 4, 2) + anchor[keep, None]
+
+
+def regions_from_alignment(alignment_px: FloatArray) -> Regions:
+    """The regions of people whose hips and circle are known.
+
+    Args:
+        alignment_px: Shape (P, 2, 2): the middle of the hips, and a point above the head on the
+            circle around the whole person, in the full image.
+    """
+    hips, circle = alignment_px[:, _HIPS], alignment_px[:, _CIRCLE]
+    radius = np.linalg.norm(circle - hips, axis=-1)
+    return Regions(hips, 2.0 * REGION_SCALE * radius, upright_rotation(hips, circle))

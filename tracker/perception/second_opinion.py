@@ -1,0 +1,88 @@
+"""Do the bodies agree with the hands? Poses refuse hands at the head and add arms that are up."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tracker.config import Config
+from tracker.containers import CameraImage, Hands
+from tracker.perception.bodies import Bodies
+from tracker.perception.detector import BodyDetector, HandDetector
+from tracker.perception.pose_hands import draw_hands
+from tracker.perception.pose_rules import (
+    arms_without_hand,
+    find_owners,
+    hands_at_head,
+    judge_arms,
+)
+
+#: Bodies seen longer ago than this say nothing any more: an arm goes up or down in half of it
+#: (guess).
+_BODY_MAX_AGE_S = 1.0
+
+
+class SecondOpinion:
+    """A hand detector whose answers are weighed against body poses.
+
+    Args:
+        hands: Finds hands.
+        bodies: Finds people, in its own time.
+        config: The pose group.
+    """
+
+    def __init__(self, hands: HandDetector, bodies: BodyDetector, config: Config) -> None:
+        self._hands = hands
+        self._bodies = bodies
+        self._config = config
+
+    def find(self, image: CameraImage) -> Hands:
+        """Every hand of the image, in pixels of the full image."""
+        hands = self._hands.find(image)
+        bodies = self._bodies.find(image)
+        return weigh_opinions(hands, bodies, (image.width, image.height), self._config)
+
+    def reset(self) -> None:
+        """Forget earlier images."""
+        self._hands.reset()
+        self._bodies.reset()
+
+    def configure(self, config: Config) -> None:
+        """Take over changed parameters, from the next image on.
+
+        Raises:
+            ModelFileError: As the hand detector's; nothing has changed then.
+        """
+        self._hands.configure(config)
+        self._bodies.configure(config)
+        self._config = config
+
+
+def weigh_opinions(
+    hands: Hands, bodies: Bodies, image_size: tuple[int, int], config: Config
+) -> Hands:
+    """Hands as they are after the bodies have been heard.
+
+    Args:
+        hands: What the hand models found.
+        bodies: Who is there, not all of them looked at just now.
+        image_size: Width and height of the picture in pixels.
+        config: `pose_opinion` and what it needs.
+
+    Returns:
+        The same hands, those at their owner's head not raised, with the owners' torsos; with
+        `pose_opinion: full` after them a schematic hand for each arm that is up in this very
+        image and has none.
+    """
+    bodies = bodies[bodies.age_s <= _BODY_MAX_AGE_S]
+    owner = find_owners(hands, bodies)
+    torso = np.full((len(hands), 2), np.nan)
+    torso[owner >= 0] = bodies.torso_px[owner[owner >= 0]]
+    at_head = hands_at_head(hands, bodies, owner, config.hand_head_clearance)
+    hands = replace(hands, raised=hands.raised & ~at_head, torso_px=torso)
+    if config.pose_opinion != "full":
+        return hands
+    raised, _ = judge_arms(bodies, config)
+    arms = raised & arms_without_hand(hands, bodies) & (bodies.age_s == 0.0)[:, None]
+    return Hands.concatenate(hands, draw_hands(bodies, arms, image_size, config))
