@@ -208,7 +208,7 @@ class Config(BaseModel):
         group="pose", live=True, gt=0.0, lt=1.0,
     )  # fmt: skip
     pose_raised_threshold: float = _parameter(
-        0.3, "How far a wrist must be above its shoulder.",
+        0.25, "How far a wrist must be above its shoulder.",
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
     pose_head_clearance: float = _parameter(

@@ -1,6 +1,7 @@
 """Containers: what they check, what they protect, and how batches are cut and joined."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -122,6 +123,21 @@ def test_hands_without_21_landmarks_are_refused():
     one = np.ones(1)
     with pytest.raises(ShapeError, match=r"landmarks_px \(1, 20, 2\)"):
         Hands(np.zeros((1, 20, 2)), one, one, one, one)
+
+
+def test_hands_know_no_torso_unless_told():
+    unknown = hands(2)
+    assert not unknown.is_owned.any()
+    known = replace(unknown, torso_px=[(5, 6), (np.nan, 6)])
+    assert known.is_owned.tolist() == [True, False]
+    with pytest.raises(ShapeError, match=r"torso_px \(3, 2\)"):
+        replace(unknown, torso_px=np.zeros((3, 2)))
+
+
+def test_hands_are_joined_in_order():
+    joined = Hands.concatenate(hands(2), Hands.none(), hands(3))
+    assert len(joined) == 5
+    np.testing.assert_array_equal(joined.score[2:], hands(3).score)
 
 
 def test_truth_that_disagrees_is_refused():

@@ -55,27 +55,27 @@ def find_owners(hands: Hands, bodies: Bodies) -> IntArray:
     """
     if len(bodies) == 0 or len(hands) == 0:
         return np.full(len(hands), -1, dtype=np.int64)
-    distance = wrist_distance(hands, bodies).min(axis=-1)
-    owner = distance.argmin(axis=1)
-    close = distance[np.arange(len(hands)), owner] < _OWN_WRIST_SHOULDERS
-    return np.where(close, owner, -1)
+    apart = _wrists_apart_px(hands, bodies).min(axis=-1) / bodies.shoulder_px
+    apart = np.where(np.isnan(apart), np.inf, apart)
+    owner = apart.argmin(axis=1)
+    return np.where(apart.min(axis=1) < _OWN_WRIST_SHOULDERS, owner, -1)
 
 
 def arms_without_hand(hands: Hands, bodies: Bodies) -> BoolArray:
-    """Shape (P, 2): arms at whose wrist no hand was found, left arm first."""
-    return np.asarray(~(wrist_distance(hands, bodies) < _OWN_WRIST_SHOULDERS).any(axis=0))
+    """Shape (P, 2): arms at whose wrist no hand was found, left arm first.
 
-
-def wrist_distance(hands: Hands, bodies: Bodies) -> FloatArray:
-    """From each hand to each wrist of each body, in widths of its shoulders.
-
-    Returns:
-        Shape (H, P, 2), left arm first; infinite for wrists that are not seen.
+    A hand's own length around its wrist is free of other wrists: in a hand that fills the picture
+    pose models see bodies of all kinds.
     """
+    reach = np.fmax(hands.length_px[:, None], _OWN_WRIST_SHOULDERS * bodies.shoulder_px)
+    return np.asarray(~(_wrists_apart_px(hands, bodies) < reach[..., None]).any(axis=0))
+
+
+def _wrists_apart_px(hands: Hands, bodies: Bodies) -> FloatArray:
+    """From each hand to each wrist of each body, shape (H, P, 2); infinite for those not seen."""
     wrists = bodies.points_px[:, WRISTS]
-    apart = np.linalg.norm(hands.wrist_px[:, None, None] - wrists[None], axis=-1)
-    usable = bodies.is_visible[:, WRISTS] & np.isfinite(bodies.shoulder_px)[:, None]
-    return np.where(usable, apart / bodies.shoulder_px[:, None], np.inf)
+    apart = np.linalg.norm(hands.wrist_px[:, None, None] - wrists, axis=-1)
+    return np.where(bodies.is_visible[:, WRISTS], apart, np.inf)
 
 
 def hands_at_head(

@@ -9,9 +9,9 @@ import onnxruntime
 from tracker.containers import FloatArray, ImageArray
 from tracker.perception.anchors import make_anchors
 from tracker.perception.models import ModelStore
-from tracker.perception.palm_search import Window
+from tracker.perception.palm_search import Palms, Window, merge_palms
 from tracker.perception.pictures import cut_out
-from tracker.perception.regions import Regions, box_overlap, first_of_each, upright_rotation
+from tracker.perception.regions import Regions, upright_rotation
 from tracker.perception.sessions import open_session
 
 INPUT_PX = 224
@@ -20,8 +20,6 @@ POSE_LAYERS = ((8, 2), (16, 2), (32, 6))
 #: How much larger than the circle around a person the landmark model's region is; it was trained
 #: so (Bazarevsky et al., "BlazePose", 2020).
 REGION_SCALE = 1.25
-#: Boxes that overlap more than this are the same person; MediaPipe's value.
-SAME_PERSON_OVERLAP = 0.3
 #: Rows of the model's key points: the middle of the hips, a point of the circle around the person.
 _HIPS, _CIRCLE = 0, 1
 
@@ -69,13 +67,13 @@ class PoseSearch:
         square = cut_out(part, back, INPUT_PX, cv2.BORDER_CONSTANT) * np.float32(2) - np.float32(1)
         boxes, logits = self._session.run(["boxes", "scores"], {"image": square})
         keypoints = decode_people(boxes[0], logits[0, :, 0], self._anchors, confidence)
-        return regions_from_alignment(keypoints[:, :2] * per_input_px + origin + (left, top))
+        return regions_from_alignment(keypoints * per_input_px + origin + (left, top))
 
 
 def decode_people(
     boxes: FloatArray, logits: FloatArray, anchors: FloatArray, confidence: float
 ) -> FloatArray:
-    """Turn the model's rows into people, one row each.
+    """Turn the model's rows into people, overlapping ones merged as palms are.
 
     Args:
         boxes: Shape (A, 12): center, width, height, then 4 key points, all in pixels of the input;
@@ -85,19 +83,16 @@ def decode_people(
         confidence: Score from which a row counts.
 
     Returns:
-        Key points of shape (P, 4, 2) in pixels of the input, the surest person first. The surest
-        of overlapping boxes stands for all: the landmark model aligns anew, so that averaging
-        them, as MediaPipe does, gains nothing.
+        The first two key points of each person, shape (P, 2, 2), in pixels of the input; the
+        surest person first.
     """
-    from_logit = np.log(confidence / (1.0 - confidence))
-    sure = np.flatnonzero((logits >= from_logit) & np.all(np.isfinite(boxes), axis=-1))
-    sure = sure[np.argsort(-logits[sure], kind="stable")]
+    score = 1.0 / (1.0 + np.exp(-np.clip(logits.astype(np.float64), -100.0, 100.0)))
+    sure = np.flatnonzero((score >= confidence) & np.all(np.isfinite(boxes), axis=-1))
     rows, anchor = boxes[sure].astype(np.float64), anchors[sure]
     center, half = rows[:, :2] + anchor, rows[:, 2:4] / 2
     corners = np.concatenate([center - half, center + half], axis=-1)
-    same = box_overlap(corners, corners) > SAME_PERSON_OVERLAP
-    keep = first_of_each(same, range(len(rows)))
-    return rows[keep, 4:].reshape(-1, 4, 2) + anchor[keep, None]
+    keypoints = rows[:, 4:].reshape(-1, 4, 2) + anchor[:, None]
+    return merge_palms(Palms(corners, keypoints, score[sure])).keypoints_px[:, [_HIPS, _CIRCLE]]
 
 
 def regions_from_alignment(alignment_px: FloatArray) -> Regions:
@@ -107,6 +102,6 @@ def regions_from_alignment(alignment_px: FloatArray) -> Regions:
         alignment_px: Shape (P, 2, 2): the middle of the hips, and a point above the head on the
             circle around the whole person, in the full image.
     """
-    hips, circle = alignment_px[:, _HIPS], alignment_px[:, _CIRCLE]
+    hips, circle = alignment_px[:, 0], alignment_px[:, 1]
     radius = np.linalg.norm(circle - hips, axis=-1)
     return Regions(hips, 2.0 * REGION_SCALE * radius, upright_rotation(hips, circle))

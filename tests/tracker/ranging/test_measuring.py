@@ -188,3 +188,32 @@ def test_a_palm_that_tilts_away_is_as_near_as_it_is_broad(cast, legs):
     tilted = replace(hands, landmarks_px=landmarks)
     found = measure_people(tilted, CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
     assert positions(found)[0] == pytest.approx([1.5, 0.25], abs=0.08)
+
+
+def with_torso(hands, *points):
+    """The same hands, whose owners' torsos stand at points (x, y) of the camera's body frame."""
+    torso = [(320.0 - 460.0 * y / x, 240.0) for x, y in points]
+    return replace(hands, torso_px=np.array(torso))
+
+
+def test_of_two_people_at_the_hand_the_one_whose_torso_is_known(cast, legs):
+    scan = cast(legs(1.5, 0.35) + legs(1.5, -0.35))
+    for y in (0.35, -0.35):
+        hands = with_torso(hands_toward((1.5, 0.0)), (1.5, y))
+        found = measure_people(hands, CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+        assert positions(found)[0] == pytest.approx([1.5, y], abs=0.07)
+
+
+def test_a_torso_s_bearing_is_surer_than_a_wrist_s():
+    hands = hands_toward((2.0, 0.3))
+    config = Config()
+    wrist, torso = (
+        measure_people(each, CAMERA, AT_ORIGIN, None, None, config)
+        for each in (hands, with_torso(hands, (2.0, 0.0)))
+    )
+    assert torso.values[0, 0] == pytest.approx(0.0, abs=1e-9)
+    # Two parts: the offset at the supposed range, and the noise of the pixel.
+    pixel = config.wrist_std_px / 460.0
+    expected = np.hypot(np.arctan2(config.torso_offset_std_m, config.unknown_range_m), pixel)
+    assert np.sqrt(torso.covariance[0, 0, 0]) == pytest.approx(expected, rel=1e-6)
+    assert torso.covariance[0, 0, 0] < wrist.covariance[0, 0, 0] / 4

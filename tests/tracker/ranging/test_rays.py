@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -85,3 +87,9 @@ def test_a_wrist_is_as_uncertain_as_its_hand_is_large(length_px, noise_px):
     longer = Hands(points, hand.score, hand.right, hand.raised, hand.raise_measure)
     rays = hand_rays(longer, CAMERA, RigidTransform(), Config())
     assert rays.bearing_std_rad[0] * CAMERA.fx == pytest.approx(noise_px)
+
+
+def test_where_a_torso_is_known_the_ray_goes_there():
+    hands = replace(hands_at((540, 100), (540, 100)), torso_px=[(320, 200), (np.nan, np.nan)])
+    rays = hand_rays(hands, CAMERA, RigidTransform(), Config())
+    assert np.degrees(rays.bearing_rad) == pytest.approx([0.0, -25.5600], abs=1e-3)

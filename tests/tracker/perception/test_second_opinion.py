@@ -1,0 +1,90 @@
+import numpy as np
+import pytest
+
+from tracker.config import Config
+from tracker.containers import CameraImage, Hands
+from tracker.perception import HandDetector
+from tracker.perception.bodies import Bodies
+from tracker.perception.second_opinion import SecondOpinion, weigh_opinions
+
+SIZE = (640, 480)
+UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
+PHONING = {"right_elbow": (165, 120), "right_wrist": (183, 78)}
+
+
+def weigh(hands, bodies, opinion):
+    return weigh_opinions(hands, bodies, SIZE, Config(pose_opinion=opinion))
+
+
+@pytest.mark.parametrize("opinion", ["veto", "full"])
+def test_a_raised_hand_at_its_owners_ear_is_not_raised(body, upright_hand, opinion):
+    answer = weigh(upright_hand((183, 78)), body(**PHONING), opinion)
+    assert answer.raised.tolist() == [False]
+
+
+@pytest.mark.parametrize("opinion", ["veto", "full"])
+def test_a_raised_hand_beside_the_head_stays_and_knows_its_torso(body, upright_hand, opinion):
+    answer = weigh(upright_hand((148, 70)), body(**UP), opinion)
+    assert answer.raised.tolist() == [True]
+    np.testing.assert_allclose(answer.torso_px, [[200, 128]])
+
+
+def test_a_hand_without_a_body_stays_as_it_is(upright_hand):
+    hands = upright_hand((148, 70))
+    answer = weigh(hands, Bodies.none(), "full")
+    assert answer.raised.tolist() == [True]
+    assert np.isnan(answer.torso_px).all()
+
+
+def test_a_pose_never_raises_a_hand_that_the_hand_rule_calls_lowered(body, upright_hand):
+    answer = weigh(upright_hand((148, 70), raised=False), body(**UP), "full")
+    assert answer.raised.tolist() == [False]
+
+
+def test_an_arm_that_is_up_without_a_hand_is_a_raised_hand_in_full(body):
+    answer = weigh(Hands.none(), body(**UP), "full")
+    assert answer.raised.tolist() == [True]
+    np.testing.assert_allclose(answer.wrist_px, [[148, 70]])
+    assert len(weigh(Hands.none(), body(**UP), "veto")) == 0
+
+
+def test_an_arm_seen_up_earlier_is_not_up_now(body):
+    assert len(weigh(Hands.none(), body(**UP, age_s=0.1), "full")) == 0
+
+
+def test_a_body_seen_long_ago_says_nothing(body, upright_hand):
+    hand = upright_hand((183, 78))
+    assert weigh(hand, body(**PHONING, age_s=0.9), "veto").raised.tolist() == [False]
+    assert weigh(hand, body(**PHONING, age_s=1.1), "veto").raised.tolist() == [True]
+
+
+def test_an_arm_that_hangs_adds_nothing(body):
+    assert len(weigh(Hands.none(), body(), "full")) == 0
+
+
+class Always:
+    def __init__(self, answer):
+        self.answer = answer
+        self.calls = []
+
+    def find(self, image):
+        return self.answer
+
+    def reset(self):
+        self.calls.append("reset")
+
+    def configure(self, config):
+        self.calls.append(config)
+
+
+def test_both_detectors_are_asked_reset_and_configured(body, upright_hand):
+    hands, bodies = Always(upright_hand((183, 78))), Always(body(**PHONING))
+    opinion = SecondOpinion(hands, bodies, Config(pose_opinion="veto"))
+    assert isinstance(opinion, HandDetector)
+    image = CameraImage(0, "", np.zeros((480, 640, 3), np.uint8))
+    assert opinion.find(image).raised.tolist() == [False]
+    opinion.reset()
+    lenient = Config(pose_opinion="veto", hand_head_clearance=0.1)
+    opinion.configure(lenient)
+    assert hands.calls == bodies.calls == ["reset", lenient]
+    assert opinion.find(image).raised.tolist() == [True]
