@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
-from tracker.perception.detector import BodyDetector, HandDetector
+from tracker.perception.body_detector import BodyDetector
+from tracker.perception.detector import HandDetector
 
 if TYPE_CHECKING:
     from tracker.perception.hand_finder import HandFinder

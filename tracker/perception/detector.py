@@ -1,4 +1,4 @@
-"""What must a detector be able to do? The interfaces behind which any model can stand."""
+"""What must a hand detector be able to do? The one interface behind which any model can stand."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from typing import Protocol, runtime_checkable
 
 from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
-from tracker.perception.bodies import Bodies
 
 
 @runtime_checkable
@@ -52,21 +51,4 @@ class PiecewiseDetector(HandDetector, Protocol):
 
         The search shrinks for it, down to one place in an image; followed hands are kept.
         """
-        ...
-
-
-@runtime_checkable
-class BodyDetector(Protocol):
-    """Finds people and their joints in one picture after the other, in its own time."""
-
-    def find(self, image: CameraImage) -> Bodies:
-        """Everybody known, in pixels of the full image; who was looked at just now has age 0."""
-        ...
-
-    def reset(self) -> None:
-        """Forget earlier images; the next one starts from nothing."""
-        ...
-
-    def configure(self, config: Config) -> None:
-        """Take over changed parameters, from the next image on."""
         ...

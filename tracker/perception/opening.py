@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from tracker.config import Config
+from tracker.perception.body_detector import BodyDetector
 from tracker.perception.body_finder import BodyFinder
-from tracker.perception.detector import BodyDetector, HandDetector
+from tracker.perception.detector import HandDetector
 from tracker.perception.hand_finder import HandFinder
 from tracker.perception.mediapipe_hands import MediapipeHands
 from tracker.perception.models import ModelStore

@@ -7,7 +7,7 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import BoolArray, CameraImage, FloatArray, Hands
 from tracker.perception.bodies import ELBOWS, WRISTS, Bodies
-from tracker.perception.detector import BodyDetector
+from tracker.perception.body_detector import BodyDetector
 from tracker.perception.pose_rules import judge_arms
 from tracker.perception.raise_rules import judge_raised
 

@@ -9,7 +9,8 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import CameraImage, Hands
 from tracker.perception.bodies import Bodies
-from tracker.perception.detector import BodyDetector, HandDetector
+from tracker.perception.body_detector import BodyDetector
+from tracker.perception.detector import HandDetector
 from tracker.perception.pose_hands import draw_hands
 from tracker.perception.pose_rules import (
     arms_without_hand,
