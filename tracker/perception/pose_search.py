@@ -9,9 +9,9 @@ import onnxruntime
 from tracker.containers import FloatArray, ImageArray
 from tracker.perception.anchors import make_anchors
 from tracker.perception.models import ModelStore
-from tracker.perception.palm_search import Palms, Window, merge_palms
+from tracker.perception.palm_search import Window
 from tracker.perception.pictures import cut_out
-from tracker.perception.regions import Regions, upright_rotation
+from tracker.perception.regions import Regions, box_overlap, upright_rotation
 from tracker.perception.sessions import open_session
 
 INPUT_PX = 224
@@ -20,8 +20,8 @@ POSE_LAYERS = ((8, 2), (16, 2), (32, 6))
 #: How much larger than the circle around a person the landmark model's region is; it was trained
 #: so (Bazarevsky et al., "BlazePose", 2020).
 REGION_SCALE = 1.25
-#: Rows of the model's key points: the middle of the hips, a point of the circle around the person.
-_HIPS, _CIRCLE = 0, 1
+#: Boxes that overlap more than this are the same person; MediaPipe's value.
+SAME_PERSON_OVERLAP = 0.3
 
 
 class PoseSearch:
@@ -73,7 +73,7 @@ class PoseSearch:
 def decode_people(
     boxes: FloatArray, logits: FloatArray, anchors: FloatArray, confidence: float
 ) -> FloatArray:
-    """Turn the model's rows into people, overlapping ones merged as palms are.
+    """Turn the model's rows into people, rows that overlap the surest averaged into it.
 
     Args:
         boxes: Shape (A, 12): center, width, height, then 4 key points, all in pixels of the input;
@@ -83,16 +83,24 @@ def decode_people(
         confidence: Score from which a row counts.
 
     Returns:
-        The first two key points of each person, shape (P, 2, 2), in pixels of the input; the
-        surest person first.
+        The middle of the hips and a point of the circle around each person, shape (P, 2, 2), in
+        pixels of the input; the surest person first.
     """
     score = 1.0 / (1.0 + np.exp(-np.clip(logits.astype(np.float64), -100.0, 100.0)))
     sure = np.flatnonzero((score >= confidence) & np.all(np.isfinite(boxes), axis=-1))
+    sure = sure[np.argsort(-score[sure], kind="stable")]
     rows, anchor = boxes[sure].astype(np.float64), anchors[sure]
     center, half = rows[:, :2] + anchor, rows[:, 2:4] / 2
     corners = np.concatenate([center - half, center + half], axis=-1)
-    keypoints = rows[:, 4:].reshape(-1, 4, 2) + anchor[:, None]
-    return merge_palms(Palms(corners, keypoints, score[sure])).keypoints_px[:, [_HIPS, _CIRCLE]]
+    keypoints = rows[:, 4:8].reshape(-1, 2, 2) + anchor[:, None]
+    same = box_overlap(corners, corners) > SAME_PERSON_OVERLAP
+    same |= np.eye(len(same), dtype=bool)  # a box without area is a person, too
+    people, is_left = [], np.ones(len(rows), dtype=bool)
+    while is_left.any():
+        group = is_left & same[is_left.argmax()]
+        people.append(np.average(keypoints[group], axis=0, weights=score[sure[group]]))
+        is_left &= ~group
+    return np.array(people).reshape(-1, 2, 2)
 
 
 def regions_from_alignment(alignment_px: FloatArray) -> Regions:
