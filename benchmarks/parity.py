@@ -67,7 +67,13 @@ def compare(pictures: list[np.ndarray], complexity: int) -> list[float]:
     """How far each hand of MediaPipe's is from the nearest of ours; infinite without any."""
     from mediapipe.python.solutions.hands import Hands
 
-    config = Config(model_complexity=complexity, downscale_factor=1)
+    # As MediaPipe: the whole picture alone, and hands that point anywhere.
+    config = Config(
+        model_complexity=complexity,
+        downscale_factor=1,
+        search_regions_per_frame=1,
+        search_lean_max_deg=180.0,
+    )
     finder = HandFinder(config)
     differences: list[float] = []
     with Hands(

@@ -152,13 +152,13 @@ def _evaluate_photos(
 ) -> None:
     from tracker.evaluation.photo_labels import read_labels
     from tracker.evaluation.photo_study import photos_as_dict, study_photos
-    from tracker.perception import HandFinder
+    from tracker.perception import open_detector
     from tracker.report.photo_table import photo_tables, write_photos
 
     photos = read_labels(folder)
     fetch_models_if_needed(errors)
     with bar(errors, "Judging photos") as progress:
-        study = study_photos(photos, HandFinder(config), looks=looks, progress=progress)
+        study = study_photos(photos, open_detector(config), looks=looks, progress=progress)
     files = write_photos(study, out) if out is not None else ()
     if as_json:
         print_json(photos_as_dict(study))

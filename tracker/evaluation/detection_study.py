@@ -116,7 +116,8 @@ def study_detection(
         seed: Of everything drawn.
         config: The pipeline's parameters; scenes come at its `processing_rate`.
         distances_m: Of the callers; those who do not call are between the least and the greatest.
-        open_detector: Makes a detector, in the process where it works; `HandFinder` where None.
+        open_detector: Makes a detector, in the process where it works; by default the configured
+            one.
         executor: Who runs the units; here and now where None.
         progress: Told the share that is done.
 
@@ -126,9 +127,9 @@ def study_detection(
     """
     _check(episodes, minutes, seed, distances_m)
     if open_detector is None:
-        from tracker.perception import HandFinder
+        from tracker import perception  # brings ONNX Runtime along
 
-        open_detector = HandFinder
+        open_detector = perception.open_detector
     distances = tuple(distances_m)
     conditions = draw_conditions(distances, episodes, np.random.default_rng(seed))
     numbered = list(enumerate(conditions))

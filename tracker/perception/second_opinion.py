@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, Hands
+from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
 from tracker.perception.bodies import Bodies
 from tracker.perception.body_detector import BodyDetector
-from tracker.perception.detector import HandDetector
+from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.perception.pose_hands import draw_hands
 from tracker.perception.pose_rules import (
     arms_without_hand,
@@ -37,6 +37,21 @@ class SecondOpinion:
         self._hands = hands
         self._bodies = bodies
         self._config = config
+
+    @property
+    def work(self) -> PerceptionWork:
+        """What the hands of the last image cost; the bodies are not counted."""
+        return self._hands.work if isinstance(self._hands, PiecewiseDetector) else PerceptionWork()
+
+    def expect(self, boxes_px: FloatArray) -> None:
+        """Where raised hands are likelier; told to a hand detector that can be told."""
+        if isinstance(self._hands, PiecewiseDetector):
+            self._hands.expect(boxes_px)
+
+    def set_budget(self, runs: int | None) -> None:
+        """How many model runs the hands of an image may take."""
+        if isinstance(self._hands, PiecewiseDetector):
+            self._hands.set_budget(runs)
 
     def find(self, image: CameraImage) -> Hands:
         """Every hand of the image, in pixels of the full image."""

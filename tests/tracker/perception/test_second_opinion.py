@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tracker.config import Config
-from tracker.containers import CameraImage, Hands
+from tracker.containers import CameraImage, Hands, PerceptionWork
 from tracker.perception import HandDetector
 from tracker.perception.bodies import Bodies
 from tracker.perception.second_opinion import SecondOpinion, weigh_opinions
@@ -88,3 +88,25 @@ def test_both_detectors_are_asked_reset_and_configured(body, upright_hand):
     opinion.configure(lenient)
     assert hands.calls == bodies.calls == ["reset", lenient]
     assert opinion.find(image).raised.tolist() == [True]
+
+
+class Told(Always):
+    """A hand detector that can be told where to look, and how much."""
+
+    work = PerceptionWork(places=2)
+
+    def expect(self, boxes_px):
+        self.expected_px = boxes_px
+
+    def set_budget(self, runs):
+        self.runs = runs
+
+
+def test_who_looks_piece_by_piece_is_told_where_and_how_much():
+    hands = Told(Hands.none())
+    opinion = SecondOpinion(hands, None, Config())
+    opinion.expect(np.array([[1.0, 2.0, 3.0, 4.0]]))
+    opinion.set_budget(3)
+    assert hands.expected_px.tolist() == [[1.0, 2.0, 3.0, 4.0]]
+    assert hands.runs == 3
+    assert opinion.work.places == 2

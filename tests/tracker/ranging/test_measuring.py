@@ -213,7 +213,8 @@ def test_a_torso_s_bearing_is_surer_than_a_wrist_s():
     )
     assert torso.values[0, 0] == pytest.approx(0.0, abs=1e-9)
     # Two parts: the offset at the supposed range, and the noise of the pixel.
-    pixel = config.wrist_std_px / 460.0
+    length = hands.length_px[0]
+    pixel = np.hypot(0.3 + 0.005 * length, 1.0 + 0.02 * length) / 460.0
     expected = np.hypot(np.arctan2(config.torso_offset_std_m, config.unknown_range_m), pixel)
     assert np.sqrt(torso.covariance[0, 0, 0]) == pytest.approx(expected, rel=1e-6)
     assert torso.covariance[0, 0, 0] < wrist.covariance[0, 0, 0] / 4
