@@ -7,7 +7,7 @@ order of rows. At the same time the picture is searched for more, a few places i
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Protocol
 
@@ -25,8 +25,10 @@ from tracker.containers import (
 from tracker.perception.landmarks import Landmarks
 from tracker.perception.movement import Movement
 from tracker.perception.palm_search import Palms, Window
+from tracker.perception.pictures import continues
 from tracker.perception.regions import (
     Regions,
+    first_of_each,
     overlap,
     regions_from_landmarks,
     regions_from_palms,
@@ -107,7 +109,7 @@ class HandFollower:
         Returns:
             The hands, and the row of each in the last image's; -1 for those newly found.
         """
-        if self._last is None or not _continues(self._last, image):
+        if self._last is None or not continues(self._last, image):
             self.reset()
         self._last = image
         regions, rows = self._regions[: config.max_hands], self._rows[: config.max_hands]
@@ -187,7 +189,7 @@ def drop_known(found: Regions, known: Regions) -> Regions:
     """The found regions that hold neither a known hand nor one that stands earlier among them."""
     is_new = ~(overlap(found, known) > SAME_REGION_OVERLAP).any(axis=-1)
     found = found[is_new]
-    return found[_first_of_each(overlap(found, found) > SAME_REGION_OVERLAP, range(len(found)))]
+    return found[first_of_each(overlap(found, found) > SAME_REGION_OVERLAP, range(len(found)))]
 
 
 def first_of_each_hand(hands: Landmarks) -> BoolArray:
@@ -197,7 +199,7 @@ def first_of_each_hand(hands: Landmarks) -> BoolArray:
     distance = np.linalg.norm(apart, axis=-1).mean(axis=-1)
     same = distance < SAME_HAND_DISTANCE * np.minimum(side[:, None], side[None, :])
     same |= _is_inside(hands.points_px, side) | _is_inside(hands.points_px, side).T
-    return _first_of_each(same, np.argsort(-hands.score, kind="stable").tolist())
+    return first_of_each(same, np.argsort(-hands.score, kind="stable").tolist())
 
 
 def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:
@@ -210,22 +212,6 @@ def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:
     center = points_px.mean(axis=1)[:, None]
     within = ((center >= low) & (center <= high)).all(axis=-1)
     return np.asarray(within & (SMALLER_HAND * side_px[:, None] < side_px))
-
-
-def _first_of_each(same: BoolArray, order: Iterable[int]) -> BoolArray:
-    """Mask of the rows that are not the same as a row kept before them in `order`."""
-    keep = np.zeros(len(same), dtype=bool)
-    for row in order:
-        keep[row] = not np.any(same[row] & keep)
-    return keep
-
-
-def _continues(last: CameraImage, image: CameraImage) -> bool:
-    return (
-        image.stamp_ns >= last.stamp_ns
-        and image.frame_id == last.frame_id
-        and image.bgr.shape == last.bgr.shape
-    )
 
 
 def _regions_of(found: Sequence[Palms], config: Config) -> Regions:
