@@ -35,7 +35,7 @@ setup(
     # `colcon build --symlink-install` does not see pyproject.toml.
     entry_points={
         "console_scripts": [
-            "raised-hand = tracker.cli:main",
+            "raised-hand = tracker.cli.app:main",
             "raised-hand-dds = nodes.dds_hand_detector:main",
             "hand_detector = nodes.hand_detector:main",
             "lifecycle_hand_detector = nodes.lifecycle_hand_detector:main",

@@ -207,7 +207,7 @@ def command(
     """
     from rich.console import Console
 
-    from tracker.cli_progress import fetch_models_if_needed
+    from tracker.cli.progress import fetch_models_if_needed
 
     config, in_file = Config(), False
     if params_file is not None:

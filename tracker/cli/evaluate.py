@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tracker.cli_jobs import JobsOption, processes
-from tracker.cli_options import (
+from tracker.cli.jobs import JobsOption, processes
+from tracker.cli.options import (
     ConfigOption,
     JsonOption,
     ParameterOption,
@@ -18,7 +18,7 @@ from tracker.cli_options import (
     print_files,
     print_json,
 )
-from tracker.cli_progress import bar, fetch_models_if_needed
+from tracker.cli.progress import bar, fetch_models_if_needed
 from tracker.config import Config
 from tracker.errors import ConfigError
 

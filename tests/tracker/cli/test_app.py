@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tracker import CameraImage
-from tracker.cli import main
+from tracker.cli.app import main
 from tracker.recording import RecordingWriter
 
 

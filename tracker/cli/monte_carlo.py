@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from tracker.cli_jobs import JobsOption, processes
-from tracker.cli_options import (
+from tracker.cli.jobs import JobsOption, processes
+from tracker.cli.options import (
     ConfigOption,
     JsonOption,
     ParameterOption,
@@ -19,7 +19,7 @@ from tracker.cli_options import (
     print_files,
     print_json,
 )
-from tracker.cli_progress import bar
+from tracker.cli.progress import bar
 from tracker.errors import ConfigError
 
 

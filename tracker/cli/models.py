@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tracker.cli_options import JsonOption, console, errors, print_json
+from tracker.cli.options import JsonOption, console, errors, print_json
 
 models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
 
@@ -30,7 +30,7 @@ def models_fetch(
     For a robot without a network: fetch with --to on another machine, copy the folder, and set the
     environment variable RAISED_HAND_MODELS to it.
     """
-    from tracker.cli_progress import fetch_progress
+    from tracker.cli.progress import fetch_progress
     from tracker.perception.models import ModelStore, fetch_models
 
     store = ModelStore(to)

@@ -1,0 +1,1 @@
+"""The command `raised-hand`: one file per command, and what they share."""

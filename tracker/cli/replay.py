@@ -1,0 +1,76 @@
+"""`raised-hand replay`: a recording through the tracker, as the robot would have seen it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tracker.cli.options import (
+    ConfigOption,
+    JsonOption,
+    ParameterOption,
+    complain,
+    console,
+    errors,
+    parameters_from,
+    print_files,
+    print_json,
+)
+from tracker.cli.progress import bar, fetch_models_if_needed
+from tracker.errors import ConfigError
+
+
+def replay_command(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            help="rosbag2 folder, .mcap, .db3, ROS 1 .bag, a video, or a folder of photos "
+            "(without LiDAR, bearings only)."
+        ),
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the files.")] = Path("out"),
+    config: ConfigOption = None,
+    param: ParameterOption = None,
+    image_topic: Annotated[str, typer.Option(help="Camera images.")] = "/image_raw",
+    scan_topic: Annotated[str, typer.Option(help="LiDAR scans.")] = "/scan",
+    camera_info_topic: Annotated[str, typer.Option(help="Intrinsics.")] = "/camera_info",
+    stamps: Annotated[
+        str,
+        typer.Option(help="Which time counts: `header` (the sensor's) or `log` (the recorder's)."),
+    ] = "header",
+    as_json: JsonOption = False,
+) -> None:
+    """Run a recording through the tracker, as the robot would have seen it.
+
+    Writes output.mcap (for Foxglove, RViz, ros2 bag play), tracks.csv, summary.json, overview.png
+    and debug.mp4. A recording that breaks off is replayed as far as it goes, and the status is 1.
+    """
+    from tracker.recording import Topics
+    from tracker.replay import replay
+    from tracker.report.summary import summary_table
+
+    if stamps not in ("header", "log"):
+        raise ConfigError(f"--stamps is {stamps!r}; allowed is header or log.")
+    parameters = parameters_from(config, param)
+    if not source.exists():
+        raise ConfigError(f"{source}: there is no such file or folder.")
+    fetch_models_if_needed(errors)
+    topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
+    with bar(errors, "Replaying") as progress:
+        result = replay(source, out, parameters, topics=topics, stamps=stamps, progress=progress)
+    if as_json:
+        print_json(result.summary)
+    else:
+        table = summary_table(result.history)
+        images = f"{result.history.frames_processed} images"
+        console.print(table if table.row_count else f"Nobody raised a hand in {images}.")
+        print_files(result.files)
+    for remark in result.summary["remarks"]:  # type: ignore[attr-defined]
+        errors.print(f"note: {remark}", highlight=False, markup=False, soft_wrap=True)
+    for problem in result.problems:
+        complain(problem)
+    if result.problems:
+        sys.exit(1)

@@ -1,0 +1,46 @@
+"""`raised-hand simulate`: a scene of people, tables and a robot becomes a recording."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tracker.cli.options import errors, print_files
+from tracker.cli.progress import bar
+
+
+def simulate_command(
+    scene: Annotated[str, typer.Argument(help="A name of config/scenes, or a YAML file.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help=".mcap file, or rosbag2 folder.")],
+    seed: Annotated[int, typer.Option(help="Of all noise; same seed, same bytes.", min=0)] = 1,
+    jpeg: Annotated[
+        int | None,
+        typer.Option(help="Images as JPEG of this quality; a twentieth the size.", min=1, max=100),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace what is there.")] = False,
+) -> None:
+    """Play a scene of people, tables and a robot into a recording.
+
+    Rendered camera images, ray-cast scans, transforms, CameraInfo, and the truth on a topic of its
+    own. Scenes are YAML; those in config/scenes are examples.
+    """
+    simulate(scene, out, seed, jpeg, force=force)
+    print_files((out,))
+
+
+def simulate(scene: str, out: Path, seed: int, jpeg: int | None, *, force: bool) -> None:
+    """Play a scene into a recording, with a bar that tells how far it is."""
+    from tracker.simulation import load_scene, write_simulation
+
+    loaded = load_scene(scene)
+    with bar(errors, f"Simulating {Path(scene).stem}") as progress:
+        write_simulation(
+            loaded,
+            out,
+            seed,
+            progress=lambda share: progress(share, 0),
+            jpeg_quality=jpeg,
+            overwrite=force,
+        )
