@@ -295,11 +295,11 @@ class Measurements:
         return Measurements(
             values=values,
             covariance=covariance,
-            model=np.full(count, MeasurementModel.POLAR),
+            model=_column("model", int(MeasurementModel.POLAR), count, np.int64),
             sensor_pose=_rows("sensor_pose", sensor_pose, (count, 3)),
-            raised=_column("raised", raised, count).astype(bool),
-            person=_column("person", person, count).astype(np.int64),
-            hand=_column("hand", hand, count).astype(np.int64),
+            raised=_column("raised", raised, count, np.bool_),
+            person=_column("person", person, count, np.int64),
+            hand=_column("hand", hand, count, np.int64),
             appearance=None if appearance is None else np.asarray(appearance, np.float64),
         )
 
@@ -332,11 +332,11 @@ class Measurements:
         return Measurements(
             values=xy,
             covariance=_rows("covariance", covariance, (count, 2, 2)),
-            model=np.full(count, MeasurementModel.CARTESIAN),
+            model=_column("model", int(MeasurementModel.CARTESIAN), count, np.int64),
             sensor_pose=np.zeros((count, 3)),
-            raised=_column("raised", raised, count).astype(bool),
-            person=_column("person", person, count).astype(np.int64),
-            hand=_column("hand", hand, count).astype(np.int64),
+            raised=_column("raised", raised, count, np.bool_),
+            person=_column("person", person, count, np.int64),
+            hand=_column("hand", hand, count, np.int64),
             appearance=None if appearance is None else np.asarray(appearance, np.float64),
         )
 
@@ -558,10 +558,10 @@ def _freeze(batch: object, name: str, value: ArrayLike, dtype: type) -> None:
 
 
 def _check_rows(batch: Any, count: int, **tails: tuple[int, ...]) -> None:
-    arrays = _arrays(batch)
-    for name, array in arrays.items():
-        if array.shape != (count, *tails.get(name, ())):
-            shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+    for name in batch.__dataclass_fields__:
+        array = getattr(batch, name)
+        if isinstance(array, np.ndarray) and array.shape != (count, *tails.get(name, ())):
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in _arrays(batch).items())
             raise ShapeError(f"{type(batch).__name__} disagree in shape: {shapes}.")
 
 
@@ -595,17 +595,21 @@ def _arrays(batch: Any) -> dict[str, NDArray[Any]]:
     return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
 
 
-def _column(name: str, value: ArrayLike, count: int) -> FloatArray:
-    return _rows(name, value, (count,))
+def _column(name: str, value: ArrayLike, count: int, dtype: type = np.float64) -> NDArray[Any]:
+    if isinstance(value, (bool, int, float)):
+        column = np.empty(count, dtype)
+        column.fill(value)
+        return column
+    return _rows(name, value, (count,)).astype(dtype, copy=False)
 
 
 def _rows(name: str, value: ArrayLike, shape: tuple[int, ...]) -> FloatArray:
     array = np.asarray(value, dtype=np.float64)
     if array.shape == shape:
         return array
-    if array.ndim == 0:
-        return np.full(shape, array)
+    rows = np.empty(shape)
     try:
-        return np.broadcast_to(array, shape)
+        rows[:] = array
     except ValueError as error:
         raise ShapeError(f"`{name}` has shape {array.shape}; needed is {shape}.") from error
+    return rows

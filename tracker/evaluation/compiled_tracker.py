@@ -10,13 +10,16 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.containers import BoolArray, FloatArray
+from tracker.tracking.compiled.association import assign
+from tracker.tracking.compiled.sources import named_after_sources
 from tracker.tracking.sensor_model import RANGE_FLOOR_M
 
 _TURN = 2.0 * np.pi
 
 
 @njit(cache=True, error_model="numpy")
+@named_after_sources
 def track_frame(
     mean: FloatArray,
     covariance: FloatArray,
@@ -94,7 +97,7 @@ def track_frame(
                 )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _predict(mean: FloatArray, covariance: FloatArray, dt_s: float, density: float) -> None:
     for axis in range(2):
         mean[axis] += dt_s * mean[axis + 2]
@@ -111,7 +114,7 @@ def _predict(mean: FloatArray, covariance: FloatArray, dt_s: float, density: flo
         covariance[axis + 2, axis + 2] += density * dt_s
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _expect(mean: FloatArray, covariance: FloatArray, expected: FloatArray) -> None:
     x, y = mean[0], mean[1]
     distance = max(np.sqrt(x * x + y * y), RANGE_FLOOR_M)
@@ -127,7 +130,7 @@ def _expect(mean: FloatArray, covariance: FloatArray, expected: FloatArray) -> N
     expected[8] = cos * by_range0 + sin * by_range1
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _correct(
     mean: FloatArray,
     covariance: FloatArray,
@@ -154,68 +157,3 @@ def _correct(
             covariance[row, column] -= (
                 root[row, 0] * root[column, 0] + root[row, 1] * root[column, 1]
             )
-
-
-@njit(cache=True, error_model="numpy")
-def assign(gain: FloatArray, row_of: IntArray, is_taken: BoolArray) -> None:
-    """Row of the measurement of each person, or -1: at the highest sum of gains."""
-    row_of[:], is_taken[:] = -1, False
-    for person in range(len(gain)):
-        best, most = -1, 0.0
-        for row in range(len(is_taken)):
-            if gain[person, row] > most:
-                best, most = row, gain[person, row]
-        if best >= 0:
-            if is_taken[best]:
-                row_of[:] = _assign_disputed(gain)
-                return
-            is_taken[best] = True
-            row_of[person] = best
-
-
-@njit(cache=True, error_model="numpy")
-def _assign_disputed(gain: FloatArray) -> IntArray:
-    """The Hungarian algorithm, by shortest augmenting paths.
-
-    Each person has a column of their own for "missed" beside those of the measurements, so that
-    there is a column for everybody.
-
-    Source: Jonker and Volgenant, "A shortest augmenting path algorithm for dense and sparse linear
-        assignment problems", Computing 38, 1987.
-    """
-    people, measured = gain.shape
-    columns = measured + people
-    price_of_person, price = np.zeros(people), np.zeros(columns)
-    owner = np.full(columns, -1)
-    for newcomer in range(people):
-        shortest, before = np.full(columns, np.inf), np.full(columns, -1)
-        is_done = np.zeros(columns, np.bool_)
-        person, last, length = newcomer, -1, 0.0
-        while person >= 0:
-            nearest, least = -1, np.inf
-            for column in range(columns):
-                if is_done[column]:
-                    continue
-                cost = -gain[person, column] if column < measured else 0.0
-                reach = length + cost - price_of_person[person] - price[column]
-                if reach < shortest[column]:
-                    shortest[column], before[column] = reach, last
-                if shortest[column] < least:
-                    nearest, least = column, shortest[column]
-            is_done[nearest] = True
-            length, last, person = least, nearest, owner[nearest]
-        price_of_person[newcomer] += length
-        for column in range(columns):
-            if is_done[column] and column != last:
-                price_of_person[owner[column]] += length - shortest[column]
-                price[column] -= length - shortest[column]
-        while last >= 0:
-            earlier = before[last]
-            owner[last] = newcomer if earlier < 0 else owner[earlier]
-            last = earlier
-    chosen = np.full(people, -1)
-    for column in range(measured):
-        person = owner[column]
-        if person >= 0 and gain[person, column] > 0.0:
-            chosen[person] = column
-    return chosen

@@ -12,10 +12,10 @@ from tracker.tracking.filter import positions
 
 #: Farther than this from the fixed frame's origin there is no person, and less or more than these
 #: variances no sensor claims; beyond them squares overflow.
-_ABSURD_M = 1e6
-_VARIANCE_MIN, _VARIANCE_MAX = 1e-12, 1e9
+ABSURD_M = 1e6
+VARIANCE_MIN, VARIANCE_MAX = 1e-12, 1e9
 #: A bearing with a wider variance than a full turn's says nothing.
-_BEARING_VARIANCE_MAX = (2.0 * np.pi) ** 2
+BEARING_VARIANCE_MAX = (2.0 * np.pi) ** 2
 #: Frames closer together than this are as one where errors are alike.
 _INTERVAL_MIN_S = 0.01
 
@@ -27,12 +27,12 @@ def usable(measurements: Measurements) -> BoolArray:
     values, covariance = measurements.values, measurements.covariance
     first, second, mixed = covariance[:, 0, 0], covariance[:, 1, 1], covariance[:, 0, 1]
     polar = measurements.model == MeasurementModel.POLAR
-    far = np.abs(values) < _ABSURD_M  # NaN compares as false, which is what is meant throughout
-    pose = np.abs(measurements.sensor_pose).max(axis=1, initial=0.0) < _ABSURD_M
+    far = np.abs(values) < ABSURD_M  # NaN compares as false, which is what is meant throughout
+    pose = np.abs(measurements.sensor_pose).max(axis=1, initial=0.0) < ABSURD_M
     sane = far[:, 0] & (far[:, 1] | (polar & np.isnan(values[:, 1]))) & pose
     sane &= ~(polar & (values[:, 1] < 0.0))
-    sane &= (np.minimum(first, second) > _VARIANCE_MIN) & (second < _VARIANCE_MAX)
-    sane &= first < np.where(polar, _BEARING_VARIANCE_MAX, _VARIANCE_MAX)
+    sane &= (np.minimum(first, second) > VARIANCE_MIN) & (second < VARIANCE_MAX)
+    sane &= first < np.where(polar, BEARING_VARIANCE_MAX, VARIANCE_MAX)
     if mixed.any() or covariance[:, 1, 0].any():
         # The correlation must be below one, with room for rounding.
         spread = np.sqrt(np.where(sane, first, 1.0) * np.where(sane, second, 1.0))
@@ -40,7 +40,7 @@ def usable(measurements: Measurements) -> BoolArray:
         mirrored = np.where(sane, covariance[:, 1, 0], 0.0)
         sane &= np.abs(np.where(sane, mixed, 0.0) - mirrored) <= 1e-9 * spread
     if measurements.sensor_pose_covariance.any():
-        sane &= _is_semidefinite(measurements.sensor_pose_covariance)
+        sane &= is_semidefinite(measurements.sensor_pose_covariance)
     return np.asarray(sane)
 
 
@@ -53,11 +53,11 @@ def _is_plain(measurements: Measurements) -> bool:
     high, mixed_high, mixed_too_high, high_second = noise.max(axis=0).tolist()
     return bool(
         mixed == mixed_too == mixed_high == mixed_too_high == 0.0
-        and min(low, low_second) > _VARIANCE_MIN
-        and high < _BEARING_VARIANCE_MAX
-        and high_second < _VARIANCE_MAX
-        and np.abs(measurements.values).max() < _ABSURD_M
-        and np.abs(measurements.sensor_pose).max() < _ABSURD_M
+        and min(low, low_second) > VARIANCE_MIN
+        and high < BEARING_VARIANCE_MAX
+        and high_second < VARIANCE_MAX
+        and np.abs(measurements.values).max() < ABSURD_M
+        and np.abs(measurements.sensor_pose).max() < ABSURD_M
         and (measurements.values[:, 1].min() >= 0.0 or measurements.model.all())
     )
 
@@ -107,16 +107,24 @@ def with_hand_bias(raised: Measurements, dt_s: float, config: Config) -> Measure
     alone = np.isnan(raised.values[:, 1])
     if config.hand_bias_duration_s == 0.0 or not alone.any():
         return raised
-    alike = np.exp(-max(dt_s, _INTERVAL_MIN_S) / config.hand_bias_duration_s)
     noise = np.array(raised.covariance)
     noise[alone, 0, 0] = np.minimum(
-        noise[alone, 0, 0] * (1.0 + alike) / (1.0 - alike), _BEARING_VARIANCE_MAX
+        noise[alone, 0, 0] * hand_bias(dt_s, config), BEARING_VARIANCE_MAX
     )
     return replace(raised, covariance=noise)
 
 
-def _is_semidefinite(covariance: FloatArray) -> BoolArray:
-    finite = np.asarray((np.abs(covariance) < _VARIANCE_MAX).all(axis=(1, 2)))
+def hand_bias(dt_s: float, config: Config) -> float:
+    """How many times the variance of independent errors such bearings have; 1 where it is off."""
+    if config.hand_bias_duration_s == 0.0:
+        return 1.0
+    alike = np.exp(-max(dt_s, _INTERVAL_MIN_S) / config.hand_bias_duration_s)
+    return float((1.0 + alike) / (1.0 - alike))
+
+
+def is_semidefinite(covariance: FloatArray) -> BoolArray:
+    """Shape (M,): which of the matrices, shape (M, 3, 3), could be a covariance."""
+    finite = np.asarray((np.abs(covariance) < VARIANCE_MAX).all(axis=(1, 2)))
     safe = np.where(finite[:, None, None], covariance, 0.0)
     symmetric = np.abs(safe - np.swapaxes(safe, 1, 2)).max(axis=(1, 2))
     least, most = np.linalg.eigvalsh(safe)[:, [0, -1]].T

@@ -17,7 +17,7 @@ from tracker.tracking.sensor_model import RANGE_FLOOR_M, expect_cartesian, expec
 
 #: A measurement's variance counts for at least this share of what the track itself contributes to
 #: the innovation: beyond it the posterior would drown in rounding errors.
-_NOISE_SHARE_MIN = 1e-9
+NOISE_SHARE_MIN = 1e-9
 
 
 def innovations(
@@ -124,8 +124,8 @@ def correct(
     """
     cross = covariance[..., :2] @ np.swapaxes(jacobian, -1, -2)
     own = jacobian @ cross[..., :2, :]
-    s00 = own[..., 0, 0] + np.maximum(noise[..., 0, 0], _NOISE_SHARE_MIN * own[..., 0, 0])
-    s11 = own[..., 1, 1] + np.maximum(noise[..., 1, 1], _NOISE_SHARE_MIN * own[..., 1, 1])
+    s00 = own[..., 0, 0] + np.maximum(noise[..., 0, 0], NOISE_SHARE_MIN * own[..., 0, 0])
+    s11 = own[..., 1, 1] + np.maximum(noise[..., 1, 1], NOISE_SHARE_MIN * own[..., 1, 1])
     s01 = own[..., 0, 1] + noise[..., 0, 1]
     # inv(L) of the 2x2 Cholesky factor, row by row.
     l00 = np.sqrt(s00)

@@ -15,10 +15,10 @@ from tracker.containers import FloatArray, IntArray
 
 #: Sweeps end once no message changes by more, or after so many: then the answer is still a
 #: probability, only not the best one.
-_CHANGE_MIN = 1e-9
-_SWEEPS_MAX = 200
+CHANGE_MIN = 1e-9
+SWEEPS_MAX = 200
 #: Beyond, a pair is certain; sums over the other pairs would drown in rounding errors.
-_LOG_ODDS_MAX = 20.0
+LOG_ODDS_MAX = 20.0
 
 
 def marginals(track: IntArray, claim: IntArray, odds: FloatArray) -> FloatArray:
@@ -34,15 +34,15 @@ def marginals(track: IntArray, claim: IntArray, odds: FloatArray) -> FloatArray:
     """
     if len(track) == 0:
         return np.zeros(0)
-    weight = np.exp(np.minimum(odds, _LOG_ODDS_MAX))
+    weight = np.exp(np.minimum(odds, LOG_ODDS_MAX))
     to_track = np.ones(len(weight))
-    for _ in range(_SWEEPS_MAX):
+    for _ in range(SWEEPS_MAX):
         told = weight * to_track
         to_claim = weight / (1.0 + _others(track, told))
         message = 1.0 / (1.0 + _others(claim, to_claim))
         change = np.abs(message - to_track).max()
         to_track = message
-        if change < _CHANGE_MIN:
+        if change < CHANGE_MIN:
             break
     told = weight * to_track
     return np.asarray(told / (1.0 + np.bincount(track, told)[track]))

@@ -18,9 +18,9 @@ from tracker.tracking.people import People
 #: One newcomer in two is somebody (guess).
 BIRTH_EXISTENCE = 0.5
 #: Existence below which nobody is believed in any more.
-_EXISTENCE_MIN = 0.05
+EXISTENCE_MIN = 0.05
 #: One frame makes nobody more than so much likelier: its errors have a common cause.
-_LOG_EVIDENCE_MAX = float(np.log(100.0))
+LOG_EVIDENCE_MAX = float(np.log(100.0))
 
 
 def believe(existence: FloatArray, log_evidence: FloatArray) -> FloatArray:
@@ -32,7 +32,7 @@ def believe(existence: FloatArray, log_evidence: FloatArray) -> FloatArray:
             than without, logarithm; 0 where nothing was measured. Less than 0 counts as 0: what is
             assigned to somebody is no evidence against them.
     """
-    evidence = np.exp(np.minimum(np.maximum(log_evidence, 0.0), _LOG_EVIDENCE_MAX))
+    evidence = np.exp(np.minimum(np.maximum(log_evidence, 0.0), LOG_EVIDENCE_MAX))
     odds = existence / (1.0 - existence) * evidence
     return np.asarray(np.minimum(odds / (1.0 + odds), 1.0 - 1e-6))
 
@@ -122,7 +122,7 @@ def still_there(people: People, stamp_ns: int, config: Config) -> BoolArray:
     if config.confirmation == "m_of_n":
         hopeful = _may_be_confirmed(people.recent, config)
     else:
-        hopeful = alive & (people.existence >= _EXISTENCE_MIN)
+        hopeful = alive & (people.existence >= EXISTENCE_MIN)
     return np.where(people.confirmed | ~people.is_customer, alive, hopeful)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from tracker.containers import FloatArray
 
 #: Rounds after which w changes by less than the noise of its own estimate.
-_ROUNDS = 4
+ROUNDS = 4
 
 
 def outlier_noise(
@@ -43,7 +43,7 @@ def outlier_noise(
     r = r11 - r01 * r01 / r00
     a = np.maximum(a11 + r11 - share * (a01 + r01) - r, 0.0)
     weight = np.ones(y.shape)
-    for _ in range(_ROUNDS):
+    for _ in range(ROUNDS):
         scaled = r / weight
         posterior = scaled / (a + scaled)  # the share of the innovation that stays
         weight = (dof + 1.0) / (dof + (posterior * y * y * posterior + a * posterior) / r)

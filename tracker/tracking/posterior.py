@@ -10,7 +10,7 @@ from tracker.tracking.gating import Pairs
 from tracker.tracking.modes import Belief, weigh_modes
 
 #: A mode explains a measurement no more than e^50 times better than the modes on average.
-_LOG_RATIO_MAX = 50.0
+LOG_RATIO_MAX = 50.0
 
 
 def update_assigned(belief: Belief, pairs: Pairs) -> Belief:
@@ -57,7 +57,7 @@ def update_jointly(belief: Belief, pairs: Pairs, probability: FloatArray) -> Bel
     track = pairs.track
     likelihood = pairs.log_likelihood + np.log(belief.weight[:, track])
     likelihood = pairs.log_likelihood - np.logaddexp.reduce(likelihood, axis=0)
-    share = probability * np.exp(np.minimum(likelihood, _LOG_RATIO_MAX))  # (K, P)
+    share = probability * np.exp(np.minimum(likelihood, LOG_RATIO_MAX))  # (K, P)
     begins = np.flatnonzero(np.diff(track, prepend=-1))
     touched = track[begins]
     missed = np.maximum(1.0 - np.add.reduceat(probability, begins), 0.0)

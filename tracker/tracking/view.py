@@ -10,13 +10,13 @@ from tracker.containers import FloatArray
 from tracker.geometry import normalize_angle
 
 #: Half a body: who stands this close to the line of sight covers it.
-_HALF_BODY_M = 0.2
+HALF_BODY_M = 0.2
 #: A body with its arm: at the edge of the view part of it is seen.
-_ARM_M = 0.3
+ARM_M = 0.3
 #: Somebody in front hides at least from this distance on; nearer they stand side by side.
-_DEPTH_MIN_M = 0.3
+DEPTH_MIN_M = 0.3
 #: Share of the time that somebody behind another is seen nevertheless (guess).
-_OCCLUDED = 0.2
+OCCLUDED = 0.2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,10 +63,10 @@ def visibility(xy_m: FloatArray, view: View | None) -> FloatArray:
     inside = np.ones(len(xy_m))
     if view.horizontal_fov_rad < 2.0 * np.pi:
         # Whoever stands on the edge is half in view.
-        reach = np.arctan2(_ARM_M, range_m)
+        reach = np.arctan2(ARM_M, range_m)
         inside = np.clip((view.horizontal_fov_rad / 2 - off_axis) / (2 * reach) + 0.5, 0.0, 1.0)
     inside = inside * (range_m <= view.range_max_m)
-    half_width = _HALF_BODY_M / range_m
+    half_width = HALF_BODY_M / range_m
     beside = np.abs(normalize_angle(bearing[:, None] - bearing))  # who, by whom
-    hidden = (beside < half_width) & (range_m < range_m[:, None] - _DEPTH_MIN_M)
-    return inside * np.where(hidden.any(axis=1), _OCCLUDED, 1.0)
+    hidden = (beside < half_width) & (range_m < range_m[:, None] - DEPTH_MIN_M)
+    return inside * np.where(hidden.any(axis=1), OCCLUDED, 1.0)

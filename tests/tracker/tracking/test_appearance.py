@@ -37,7 +37,7 @@ def raised_at(points, clothes):
 
 def two_customers(red_at=(2, 0.5), blue_at=(2, -0.5), config=None, silent_frames=0):
     """Somebody in red and somebody in blue, known for a second; then nothing is measured."""
-    tracker = PersonTracker(config or CLOTHED)
+    tracker = PersonTracker(config or CLOTHED, compiled=False)
     for number in range(10):
         tracker.step(number * 10**8, raised_at([red_at, blue_at], [RED, BLUE]), view=NOBODY)
     for number in range(10, 10 + silent_frames):

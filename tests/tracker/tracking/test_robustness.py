@@ -35,6 +35,7 @@ def some_people(tracker):
         tracker.step(number * 10**8, Measurements.cartesian([[2, 1], [1, 0], [2.3, 1.2]], NOISE))
 
 
+@pytest.mark.parametrize("compiled", [True, False], ids=["compiled", "arrays"])
 @pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
 @settings(max_examples=25, deadline=None)
 @given(
@@ -50,9 +51,9 @@ def some_people(tracker):
     ),
 )
 def test_whatever_comes_the_state_stays_sound(
-    config, values, variances, mixed, pose, doubt, model, raised, gaps_ns
+    config, compiled, values, variances, mixed, pose, doubt, model, raised, gaps_ns
 ):
-    tracker = PersonTracker(config)
+    tracker = PersonTracker(config, compiled=compiled)
     some_people(tracker)
     noise = np.zeros((6, 2, 2))
     noise[:, [0, 1], [0, 1]] = variances

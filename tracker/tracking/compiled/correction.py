@@ -1,0 +1,152 @@
+"""What do measurements make of tracks? `posterior`, track by track."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from tracker.containers import FloatArray, IntArray
+from tracker.tracking.compiled.pairing import (
+    H00,
+    H01,
+    H10,
+    H11,
+    LOG_LIKELIHOOD,
+    R00,
+    R01,
+    R11,
+    Y0,
+    Y1,
+    log_of_sum,
+)
+from tracker.tracking.filter import NOISE_SHARE_MIN
+from tracker.tracking.posterior import LOG_RATIO_MAX
+
+
+@njit(error_model="numpy")
+def update_assigned(
+    weight: FloatArray,
+    mean: FloatArray,
+    covariance: FloatArray,
+    chosen: IntArray,
+    numbers: FloatArray,
+) -> None:
+    """Correct each track with its one pair, in place: `posterior.update_assigned`."""
+    modes = len(weight)
+    likelihood, root = np.empty(modes), np.empty((4, 2))
+    for person in range(len(chosen)):
+        pair = chosen[person]
+        if pair < 0:
+            continue
+        for mode in range(modes):
+            own_mean, own = mean[mode, person], covariance[mode, person]
+            likelihood[mode] = numbers[pair, mode, LOG_LIKELIHOOD]
+            _correct(own_mean, own, numbers[pair, mode], own_mean, own, root)
+        _weigh(weight[:, person], likelihood)
+
+
+@njit(error_model="numpy")
+def update_jointly(
+    weight: FloatArray,
+    mean: FloatArray,
+    covariance: FloatArray,
+    track: IntArray,
+    numbers: FloatArray,
+    probability: FloatArray,
+) -> None:
+    """Correct each track with all its pairs, in place: `posterior.update_jointly`."""
+    pairs, modes = len(track), len(weight)
+    share, total = np.empty((modes, pairs)), np.empty(modes)
+    moved, spread = np.empty((pairs, 4)), np.empty((pairs, 4, 4))
+    shift, root = np.empty(4), np.empty((4, 2))
+    begin = 0
+    while begin < pairs:
+        person, end = track[begin], begin + 1
+        while end < pairs and track[end] == person:
+            end += 1
+        missed = 1.0
+        for pair in range(begin, end):
+            missed -= probability[pair]
+            both = -np.inf
+            for mode in range(modes):
+                joint = numbers[pair, mode, LOG_LIKELIHOOD] + np.log(weight[mode, person])
+                both = log_of_sum(both, joint)
+            for mode in range(modes):
+                ratio = numbers[pair, mode, LOG_LIKELIHOOD] - both
+                share[mode, pair] = probability[pair] * np.exp(min(ratio, LOG_RATIO_MAX))
+        missed = max(missed, 0.0)
+        for mode in range(modes):
+            total[mode] = missed
+            for pair in range(begin, end):
+                total[mode] += share[mode, pair]
+            total[mode] = max(total[mode], 1e-300)
+            own_mean, own = mean[mode, person], covariance[mode, person]
+            shift[:] = 0.0
+            for pair in range(begin, end):
+                share[mode, pair] /= total[mode]
+                _correct(own_mean, own, numbers[pair, mode], moved[pair], spread[pair], root)
+                for row in range(4):
+                    moved[pair, row] -= own_mean[row]
+                    shift[row] += share[mode, pair] * moved[pair, row]
+            stay = missed / total[mode]
+            for row in range(4):
+                for column in range(4):
+                    merged = stay * (own[row, column] + shift[row] * shift[column])
+                    for pair in range(begin, end):
+                        apart = moved[pair, row] - shift[row]
+                        outer = apart * (moved[pair, column] - shift[column])
+                        merged += share[mode, pair] * (spread[pair, row, column] + outer)
+                    own[row, column] = merged
+                own_mean[row] += shift[row]
+            total[mode] = np.log(total[mode])
+        _weigh(weight[:, person], total)
+        begin = end
+
+
+@njit(error_model="numpy")
+def _weigh(weight: FloatArray, log_likelihood: FloatArray) -> None:
+    """Bayes' rule on the modes of one track, in place: `modes.weigh_modes`."""
+    if len(weight) == 1:
+        return
+    most = log_likelihood.max()
+    for mode in range(len(weight)):
+        weight[mode] *= np.exp(log_likelihood[mode] - most)
+    weight /= weight.sum()
+    for mode in range(len(weight)):
+        weight[mode] = max(weight[mode], 1e-12)
+    weight /= weight.sum()
+
+
+@njit(error_model="numpy")
+def _correct(
+    mean: FloatArray,
+    covariance: FloatArray,
+    numbers: FloatArray,
+    new_mean: FloatArray,
+    new: FloatArray,
+    root: FloatArray,
+) -> None:
+    """Mean x + K y and P - K S K' of one track: `filter.correct`.
+
+    What is new may take the place of what was; `root`, shape (4, 2), is room to work in.
+    """
+    h00, h01, h10, h11 = numbers[H00], numbers[H01], numbers[H10], numbers[H11]
+    p00, p01, p11 = covariance[0, 0], covariance[0, 1], covariance[1, 1]
+    x0, y0 = p00 * h00 + p01 * h01, p01 * h00 + p11 * h01
+    x1, y1 = p00 * h10 + p01 * h11, p01 * h10 + p11 * h11
+    own00, own01, own11 = h00 * x0 + h01 * y0, h00 * x1 + h01 * y1, h10 * x1 + h11 * y1
+    l00 = np.sqrt(own00 + max(numbers[R00], NOISE_SHARE_MIN * own00))
+    l10 = (own01 + numbers[R01]) / l00
+    l11 = np.sqrt(own11 + max(numbers[R11], NOISE_SHARE_MIN * own11) - l10 * l10)
+    first = numbers[Y0] / l00
+    second = (numbers[Y1] - l10 * first) / l11
+    for row in range(4):
+        to_x, to_y = covariance[row, 0], covariance[row, 1]
+        root[row, 0] = (to_x * h00 + to_y * h01) / l00
+        root[row, 1] = (to_x * h10 + to_y * h11 - l10 * root[row, 0]) / l11
+    for row in range(4):
+        new_mean[row] = mean[row] + root[row, 0] * first + root[row, 1] * second
+        for column in range(row + 1):
+            mean_of_both = (covariance[row, column] + covariance[column, row]) * 0.5
+            taken = root[row, 0] * root[column, 0] + root[row, 1] * root[column, 1]
+            new[row, column] = new[column, row] = mean_of_both - taken
