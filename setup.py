@@ -30,6 +30,8 @@ setup(
             "stonesoup>=1.9,<2",
             "numba>=0.60,<0.70; python_version < '3.15'",
             "cyclonedds==11.0.1; python_version < '3.14'",
+            "distributed>=2024.8,<2027",
+            "pyarrow>=16,<27",
         ]
     },
     # `colcon build --symlink-install` does not see pyproject.toml.

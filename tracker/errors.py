@@ -9,6 +9,7 @@
         ModelFileError     a model file that is missing, broken or cannot be fetched
         RecordingError     a recording, video or folder that cannot be read or written
         SceneError         a simulation scene that makes no sense (also a ValueError)
+        WorkerError        processes or a cluster that die or cannot be reached
 
 Every message says what came, what was needed and what to do. The command line prints the message
 alone and leaves with status 1, or 2 where the user's own words (file names, parameters) are off.
@@ -49,3 +50,7 @@ class RecordingError(TrackerError):
 
 class SceneError(TrackerError, ValueError):
     """A simulation scene contradicts itself or asks for the impossible."""
+
+
+class WorkerError(TrackerError):
+    """The processes or the cluster that do the work died, or cannot be reached."""

@@ -1,19 +1,55 @@
-"""Who does the work of a long command? Several processes, or this one."""
+"""Who does the work of a long command? Several processes, a cluster, or this one."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor
 from contextlib import contextmanager
-from multiprocessing import get_context
 from typing import Annotated
 
 import typer
 
+from tracker.errors import ConfigError
+
 JobsOption = Annotated[
     int, typer.Option("--jobs", "-j", help="Processes; 0 is one per core.", min=0)
 ]
+ExecutorOption = Annotated[
+    str,
+    typer.Option(
+        "--executor",
+        help="Who runs the trials: processes (of this machine), or a Dask cluster by the address "
+        "of its scheduler, dask://host:port.",
+    ),
+]
+
+
+@contextmanager
+def workers(executor: str, jobs: int, units: int) -> Iterator[Executor | None]:
+    """Whoever is asked for.
+
+    Args:
+        executor: `processes`, or the address of a Dask scheduler.
+        jobs: As for `processes`.
+        units: As for `processes`.
+
+    Raises:
+        ConfigError: This is neither, or Dask is not installed.
+        WorkerError: The cluster cannot be used.
+    """
+    if executor == "processes":
+        with processes(jobs, units) as pool:
+            yield pool
+    elif "://" in executor:
+        from tracker.evaluation.cluster import dask_cluster
+
+        with dask_cluster(executor) as cluster:
+            yield cluster
+    else:
+        raise ConfigError(
+            f"--executor is {executor!r}; needed is processes, or an address as dask://host:8786."
+        )
 
 
 @contextmanager
@@ -24,9 +60,11 @@ def processes(jobs: int, units: int) -> Iterator[Executor | None]:
         jobs: How many; 0 is one per core.
         units: Pieces of work; more processes than that are of no use.
     """
+    from tracker.evaluation.workers import Processes
+
     jobs = min(jobs or os.cpu_count() or 1, units)
     if jobs <= 1:
         yield None
         return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as executor:
+    with Processes(jobs) as executor:
         yield executor

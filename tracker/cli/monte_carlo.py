@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from enum import Enum
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tracker.cli.jobs import JobsOption, processes
+from tracker.cli.jobs import ExecutorOption, JobsOption, workers
 from tracker.cli.options import (
     ConfigOption,
     JsonOption,
@@ -19,8 +21,15 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar
+from tracker.cli.progress import counting_bar
 from tracker.errors import ConfigError
+
+
+class TableFormat(str, Enum):
+    """How the table of trials is written."""
+
+    CSV = "csv"
+    PARQUET = "parquet"
 
 
 def monte_carlo_command(
@@ -37,11 +46,20 @@ def monte_carlo_command(
         Path | None,
         typer.Option(help="CSV of real people's paths (t_s, id, x_m, y_m) to walk along."),
     ] = None,
+    executor: ExecutorOption = "processes",
     jobs: JobsOption = 0,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="Folder for study.json, trials.csv and study.png."),
+        typer.Option(
+            "--out",
+            "-o",
+            help="Folder for study.json, trials.csv and study.png. Trials are written as they "
+            "finish; the same command again goes on with a study that was stopped.",
+        ),
     ] = None,
+    format: Annotated[
+        TableFormat, typer.Option(help="parquet: trials.parquet as well, once all are there.")
+    ] = TableFormat.CSV,
     as_json: JsonOption = False,
 ) -> None:
     """Run many noisy trials, and hold the tracker against the truth and against what is possible.
@@ -51,15 +69,10 @@ def monte_carlo_command(
     others run the whole tracker and print GOSPA, identity switches, times to raise and more. The
     scenario's own settings hold unless --config or -p says otherwise.
     """
-    from tracker.evaluation.monte_carlo import find_scenario, monte_carlo
-    from tracker.evaluation.scenario import (
-        SCENARIOS,
-        FilterScenario,
-        PeopleScenario,
-        default_config,
-    )
+    from tracker.evaluation.monte_carlo import find_scenario, monte_carlo, worthwhile_workers
+    from tracker.evaluation.scenario import SCENARIOS, PeopleScenario, default_config
     from tracker.evaluation.study import study_as_dict
-    from tracker.report.study_table import study_table, write_study
+    from tracker.report.study_table import study_table, write_parquet, write_study
 
     if scenario is None:
         for name, item in SCENARIOS.items():
@@ -70,21 +83,38 @@ def monte_carlo_command(
         if not isinstance(chosen, PeopleScenario):
             raise ConfigError(f"--paths: the scenario {scenario} has no people who walk.")
         chosen = replace(chosen, recording=str(paths))
+    if format is TableFormat.PARQUET:
+        _check_parquet(out)
     settings = parameters_from(config, param, default_config(chosen))
-    alone = isinstance(chosen, FilterScenario)
-    with processes(1 if alone else jobs, trials) as executor, bar(errors, "Running") as progress:
+    useful = worthwhile_workers(chosen, trials)
+    with workers(executor, jobs, useful) as crew, counting_bar(errors, "trials", trials) as count:
         study = monte_carlo(
             chosen,
             trials,
             seed,
             settings,
-            executor=executor,
-            progress=lambda share: progress(share, 0),
+            executor=crew,
+            progress=lambda share: count(round(share * trials)),
+            folder=out,
         )
     study = replace(study, name=scenario)
-    files = write_study(study, out) if out is not None else ()
+    files: tuple[Path, ...] = ()
+    if out is not None:
+        files = (out / "trials.csv", *write_study(study, out))
+    if out is not None and format is TableFormat.PARQUET:
+        files = (*files, write_parquet(study, out))
     if as_json:
         print_json(study_as_dict(study))
     else:
         console.print(study_table(study))
         print_files(files)
+
+
+def _check_parquet(out: Path | None) -> None:
+    """Before hours of work, not after."""
+    if out is None:
+        raise ConfigError("--format parquet: needs a folder for the file, --out FOLDER.")
+    if find_spec("pyarrow") is None:
+        raise ConfigError(
+            "--format parquet: needs pyarrow: pip install 'raised-hand-tracker[cluster]'."
+        )

@@ -6,7 +6,17 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    Task,
+    TaskProgressColumn,
+    TextColumn,
+    TimeRemainingColumn,
+)
+from rich.text import Text
 
 
 @contextmanager
@@ -39,6 +49,44 @@ def bar(console: Console, what: str) -> Iterator[Callable[[float, int], None]]:
             progress.update(task, completed=share, images=text)
 
         yield report
+
+
+@contextmanager
+def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[int], None]]:
+    """Show how many are done, how many a second, and the time left.
+
+    Args:
+        console: Where to.
+        what: The things counted.
+        total: How many there will be.
+
+    Yields:
+        A function of how many are done; the first call tells how many were done before.
+    """
+    if not console.is_terminal:
+        console.print(f"Running {total} {what} ...", highlight=False)
+        yield lambda done: None
+        return
+    columns = (BarColumn(), MofNCompleteColumn(), _RateColumn(what), TimeRemainingColumn())
+    with Progress(*columns, console=console, speed_estimate_period=60.0) as progress:
+        task = None
+
+        def report(done: int) -> None:
+            nonlocal task
+            if task is None:
+                task = progress.add_task(what, total=total, completed=done)
+            progress.update(task, completed=done)
+
+        yield report
+
+
+class _RateColumn(ProgressColumn):
+    def __init__(self, what: str) -> None:
+        super().__init__()
+        self._what = what
+
+    def render(self, task: Task) -> Text:
+        return Text(f"{self._what}, {task.speed:.3g}/s" if task.speed else self._what)
 
 
 @contextmanager

@@ -6,7 +6,7 @@ it, since each scene has a generator of its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
@@ -30,6 +30,7 @@ from tracker.evaluation.detection_scenes import (
     idlers_scene,
 )
 from tracker.evaluation.trial_seed import trial_rng
+from tracker.evaluation.workers import run_in_order
 from tracker.perception import HandDetector
 
 DISTANCES_M = (1.0, 2.0, 3.0, 4.0, 5.0)
@@ -142,7 +143,7 @@ def study_detection(
         for first in range(0, episodes, _UNIT)
     ]
     done: list[Episode | Minute] = []
-    for count, results in enumerate(_run(units, executor), start=1):
+    for count, results in enumerate(run_in_order(units, executor), start=1):
         done += results
         progress(count / len(units))
     return DetectionStudy(
@@ -203,21 +204,6 @@ def run_minute(
     false_raises = score_idlers(scene, open_detector(config), config, rng)
     people = tuple((item.activities[0].what, item.path[0].x_m) for item in scene.people)
     return [Minute(number, people, tuple(false_raises))]
-
-
-def _run(
-    units: Sequence[_Unit], executor: Executor | None
-) -> Iterator[list[Episode] | list[Minute]]:
-    if executor is None:
-        yield from (unit() for unit in units)
-        return
-    futures = [executor.submit(unit) for unit in units]
-    try:
-        for future in futures:
-            yield future.result()
-    finally:
-        for future in futures:
-            future.cancel()
 
 
 def _check(episodes: int, minutes: int, seed: int, distances_m: Sequence[float]) -> None:

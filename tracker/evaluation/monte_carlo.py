@@ -1,20 +1,26 @@
 """Run many trials of a scenario: the unit of work is (scenario, configuration, seed, trials).
 
 A unit is a picklable call that any `concurrent.futures` executor runs: threads, processes, or a
-cluster's. What comes out does not depend on who ran what when: units are cut the same way always,
-each trial has its own generator, and sums are formed in the order of the trials.
+cluster's. What comes out does not depend on who ran what when, nor on whether the study was
+stopped in between: units are cut the same way always, each trial has its own generator, and sums
+are formed in the order of the trials.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import json
+from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from contextlib import closing
+from dataclasses import asdict
+from functools import partial
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import FloatArray
 from tracker.errors import ConfigError, SceneError
 from tracker.evaluation.cramer_rao import posterior_bound
 from tracker.evaluation.filter_study import filter_errors, prior_covariance
@@ -36,22 +42,14 @@ from tracker.evaluation.study import (
     Study,
     settled_frame,
 )
+from tracker.evaluation.study_log import StudyLog
+from tracker.evaluation.unit import Gathered, Unit
+from tracker.evaluation.workers import run_in_order
 
 #: Trials of one unit of work: enough to be worth sending, few enough to fit into a cache.
 _BATCH_UNIT, _PEOPLE_UNIT = 250, 2
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Unit:
-    """What one unit of work gives.
-
-    Attributes:
-        rows: Figures of each trial, shape (B,).
-        sums: Of a filter scenario, over the trials: arrays of shape (T, ...).
-    """
-
-    rows: dict[str, FloatArray]
-    sums: dict[str, FloatArray] = field(default_factory=dict)
+#: Batches that a process must get to make up for its start of a second or two.
+_WORTHWHILE = 50
 
 
 def run_unit(scenario: Scenario, config: Config, seed: int, first: int, count: int) -> Unit:
@@ -87,8 +85,9 @@ def monte_carlo(
     *,
     executor: Executor | None = None,
     progress: Callable[[float], None] = lambda share: None,
+    folder: str | Path | None = None,
 ) -> Study:
-    """Run a study.
+    """Run a study, or the rest of one that was stopped.
 
     Args:
         scenario: A name from `SCENARIOS`, or one of your own.
@@ -97,10 +96,14 @@ def monte_carlo(
         config: The tracker's parameters; the scenario's own where None.
         executor: Who runs the units; here and now where None.
         progress: Told the share that is done.
+        folder: Rows are written there as units finish (`study_log.StudyLog`); what is there of
+            this very study is not run again.
 
     Raises:
         SceneError: No scenario has this name, or its recording of paths cannot be used.
-        ConfigError: There are no trials, or the seed is negative.
+        ConfigError: There are no trials, the seed is negative, or the folder holds another study.
+        RecordingError: The folder cannot be read or written.
+        WorkerError: The executor's workers die again and again.
     """
     if trials < 1 or seed < 0:
         raise ConfigError(
@@ -108,23 +111,37 @@ def monte_carlo(
         )
     name, scenario = find_scenario(scenario)
     config = default_config(scenario) if config is None else config
-    is_batch = isinstance(scenario, (FilterScenario, KnownPeopleScenario))
-    size = _BATCH_UNIT if is_batch else _PEOPLE_UNIT
-    starts = range(0, trials, size)
-    arguments = [(scenario, config, seed, first, min(size, trials - first)) for first in starts]
-    units = []
-    for unit in _run(arguments, executor):
-        units.append(unit)
-        progress(len(units) / len(arguments))
-    rows = {key: np.concatenate([unit.rows[key] for unit in units]) for key in units[0].rows}
+    size = _unit_trials(scenario)
+    gathered, done, log = Gathered(), 0, None
+    if folder is not None:
+        settings = _settings(scenario, config, seed)
+        log = StudyLog(folder, settings, size, _shapes_of_sums(scenario))
+        for unit in log.units(trials):
+            gathered.add(unit)
+            done += 1
+    progress(min(done * size, trials) / trials)
+    calls = (
+        partial(run_unit, scenario, config, seed, first, min(size, trials - first))
+        for first in range(done * size, trials, size)
+    )
+    with closing(run_in_order(calls, executor)) as units:
+        for number, unit in enumerate(units, start=done):
+            gathered.add(unit)
+            if log is not None:
+                log.add(number, unit)
+            progress(min((number + 1) * size, trials) / trials)
+    rows = gathered.rows()
     if isinstance(scenario, KnownPeopleScenario):
         return KnownPeopleStudy(name, scenario, config, seed, rows)
     if not isinstance(scenario, FilterScenario):
         return PeopleStudy(name, scenario, config, seed, rows)
-    means = {
-        key: np.sum([unit.sums[key] for unit in units], axis=0) / trials for key in units[0].sums
-    }
-    return FilterStudy(name, scenario, config, seed, rows, **means)
+    return FilterStudy(name, scenario, config, seed, rows, **gathered.means(trials))
+
+
+def worthwhile_workers(scenario: Scenario, trials: int) -> int:
+    """More processes than that would take longer to start than they save."""
+    units = -(-trials // _unit_trials(scenario))
+    return units // _WORTHWHILE if _is_batch(scenario) else units
 
 
 def find_scenario(scenario: str | Scenario) -> tuple[str, Scenario]:
@@ -140,19 +157,34 @@ def find_scenario(scenario: str | Scenario) -> tuple[str, Scenario]:
     return scenario, SCENARIOS[scenario]
 
 
-def _run(
-    arguments: list[tuple[Scenario, Config, int, int, int]], executor: Executor | None
-) -> Iterator[Unit]:
-    if executor is None:
-        yield from (run_unit(*item) for item in arguments)
-        return
-    futures = [executor.submit(run_unit, *item) for item in arguments]
-    try:
-        for future in futures:  # in order, so that sums do not depend on who is faster
-            yield future.result()
-    finally:
-        for future in futures:
-            future.cancel()
+def _is_batch(scenario: Scenario) -> bool:
+    return isinstance(scenario, (FilterScenario, KnownPeopleScenario))
+
+
+def _unit_trials(scenario: Scenario) -> int:
+    return _BATCH_UNIT if _is_batch(scenario) else _PEOPLE_UNIT
+
+
+def _settings(scenario: Scenario, config: Config, seed: int) -> dict[str, Any]:
+    """All that decides what the rows are, in plain values."""
+    settings = {
+        "version": version("raised-hand-tracker"),
+        "seed": seed,
+        "scenario": asdict(scenario),
+        "config": config.model_dump(),
+    }
+    return dict(json.loads(json.dumps(settings)))  # lists for tuples
+
+
+def _shapes_of_sums(scenario: Scenario) -> dict[str, tuple[int, ...]]:
+    if not isinstance(scenario, FilterScenario):
+        return {}
+    frames = scenario.frames
+    return {
+        "squared_error_m2": (frames,),
+        "nees": (frames,),
+        "information": (frames, 2, 2),
+    }
 
 
 def _filter_unit(

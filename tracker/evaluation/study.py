@@ -222,7 +222,7 @@ def settled_frame(scenario: FilterScenario) -> int:
 
 
 def study_as_dict(study: Study) -> dict[str, Any]:
-    """A study in plain numbers, fit for JSON; None for what was not measured."""
+    """What a study says in plain numbers, fit for JSON; None for what was not measured."""
     return {
         "scenario": study.name,
         "title": study.scenario.title,
@@ -237,7 +237,6 @@ def study_as_dict(study: Study) -> dict[str, Any]:
             }
             for figure in study.figures
         ],
-        "rows": {name: [_number(item) for item in row] for name, row in study.rows.items()},
     }
 
 

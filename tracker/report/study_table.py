@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,7 +37,7 @@ def study_table(study: Study) -> Table:
 
 
 def write_study(study: Study, folder: str | Path) -> tuple[Path, ...]:
-    """Write study.json (everything), trials.csv (a line per trial) and study.png.
+    """Write study.json (the figures) and study.png.
 
     Args:
         study: What was found.
@@ -48,26 +49,47 @@ def write_study(study: Study, folder: str | Path) -> tuple[Path, ...]:
     Raises:
         RecordingError: A file cannot be written.
     """
-    folder = Path(folder)
-    document, table, picture = (
-        folder / name for name in ("study.json", "trials.csv", "study.png")
-    )
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    document, picture = Path(folder) / "study.json", Path(folder) / "study.png"
+    with _writing(folder):
         text = json.dumps(study_as_dict(study), indent=1) + "\n"
         document.write_text(text, encoding="utf-8")
-        with table.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(["trial", *study.rows])
-            for trial, row in enumerate(zip(*study.rows.values(), strict=True)):
-                writer.writerow([trial, *(f"{value:.9g}" for value in row)])
         draw_study(study, picture)
+    return document, picture
+
+
+def write_parquet(study: Study, folder: str | Path) -> Path:
+    """Write trials.parquet, a row per trial, with pyarrow (extra `cluster`).
+
+    Args:
+        study: What was found.
+        folder: Made where it is missing; the file is replaced.
+
+    Returns:
+        The file.
+
+    Raises:
+        RecordingError: It cannot be written.
+    """
+    import pyarrow
+    from pyarrow import parquet
+
+    path = Path(folder) / "trials.parquet"
+    with _writing(folder):
+        trials = pyarrow.array(np.arange(study.trials))
+        parquet.write_table(pyarrow.table({"trial": trials, **study.rows}), path)
+    return path
+
+
+@contextmanager
+def _writing(folder: str | Path) -> Iterator[None]:
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        yield
     except OSError as error:
         raise RecordingError(
             f"{folder}: cannot be written ({error.strerror}); "
             "a folder that may be written and has room is needed."
         ) from error
-    return document, table, picture
 
 
 def _interval(figure: Figure) -> str:

@@ -1,4 +1,3 @@
-import csv
 import dataclasses
 import io
 import json
@@ -10,7 +9,7 @@ from rich.console import Console
 from tracker.errors import RecordingError
 from tracker.evaluation.monte_carlo import monte_carlo
 from tracker.evaluation.scenario import SCENARIOS
-from tracker.report.study_table import study_table, write_study
+from tracker.report.study_table import study_table, write_parquet, write_study
 
 
 @pytest.fixture(scope="module")
@@ -29,17 +28,21 @@ def test_every_figure_is_a_line_and_the_expected_bounds_stand_beside(study):
 
 
 def test_a_study_is_written_as_numbers_and_a_picture(study, tmp_path):
-    document, table, picture = write_study(study, tmp_path / "new" / "folder")
+    document, picture = write_study(study, tmp_path / "new" / "folder")
     assert json.loads(document.read_text())["scenario"] == "model-matched"
-    rows = list(csv.DictReader(table.read_text().splitlines()))
-    assert len(rows) == 20
-    assert float(rows[7]["final_nees"]) == pytest.approx(study.rows["final_nees"][7])
     assert matplotlib.image.imread(picture).std() > 0.01
+
+
+def test_trials_are_written_as_parquet_to_the_last_bit(study, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed")
+    table = parquet.read_table(write_parquet(study, tmp_path / "new"))
+    assert table["trial"].to_pylist() == list(range(20))
+    assert table["final_nees"].to_pylist() == study.rows["final_nees"].tolist()
 
 
 def test_people_are_drawn_too(tmp_path):
     short = dataclasses.replace(SCENARIOS["people"], duration_s=2.0)
-    picture = write_study(monte_carlo(short, 3), tmp_path)[2]
+    picture = write_study(monte_carlo(short, 3), tmp_path)[1]
     assert matplotlib.image.imread(picture).std() > 0.01
 
 

@@ -1,0 +1,121 @@
+"""Who runs the units of a study, in which order do they come back, and what if a worker dies?
+
+Any `concurrent.futures` executor will do: threads, `Processes` of this machine, a Dask cluster
+(`cluster.py`).
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections import deque
+from collections.abc import Callable, Generator, Iterable
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from itertools import islice
+from multiprocessing import get_context, parent_process
+from threading import Thread
+from typing import Any, TypeVar
+
+from tracker.errors import WorkerError
+
+Result = TypeVar("Result")
+
+#: Units on their way at a time, which bounds the memory: four for each of a thousand workers.
+_WINDOW = 4096
+#: So many deaths of workers with no unit finished in between are no accident; Dask says the same.
+_DEATHS = 3
+
+
+def run_in_order(
+    units: Iterable[Callable[[], Result]], executor: Executor | None
+) -> Generator[Result, None, None]:
+    """Run calls, however many, and give what they return in the order of the calls.
+
+    Where a worker's death breaks the executor, its unfinished calls are submitted again.
+
+    Args:
+        units: Calls that can be sent to other processes.
+        executor: Who runs them; here and now where None.
+
+    Raises:
+        WorkerError: Workers die again and again.
+    """
+    if executor is None:
+        yield from (unit() for unit in units)
+        return
+    units, deaths = iter(units), 0
+    waiting: deque[tuple[Callable[[], Result], Future[Result]]] = deque()
+    try:
+        while True:
+            for unit in islice(units, _WINDOW - len(waiting)):
+                waiting.append((unit, executor.submit(unit)))
+            if not waiting:
+                return
+            try:
+                result = waiting[0][1].result()
+            except BrokenExecutor:
+                deaths += 1
+                if deaths > _DEATHS:
+                    raise
+                waiting = deque(
+                    (unit, executor.submit(unit) if _is_broken(future) else future)
+                    for unit, future in waiting
+                )
+                continue
+            waiting.popleft()
+            deaths = 0
+            yield result
+    except BrokenExecutor as error:
+        raise WorkerError(
+            f"Workers died {deaths} times and no unit of work was finished in between; mostly the "
+            "memory is too small for so many at once. Run fewer (--jobs)."
+        ) from error
+    finally:
+        for _, future in waiting:
+            future.cancel()
+
+
+class Processes(Executor):
+    """Processes of this machine; in place of a pool that broke, the next call opens a new one.
+
+    Args:
+        count: How many.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._pool = self._open()
+
+    def submit(self, call: Callable[..., Any], /, *args: Any, **words: Any) -> Future[Any]:
+        """Have a call run by one of the processes."""
+        try:
+            return self._pool.submit(call, *args, **words)
+        except BrokenExecutor:
+            self._pool = self._open()
+            return self._pool.submit(call, *args, **words)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
+        """Let the processes go; by default, what they have not begun is not wanted any more."""
+        self._pool.shutdown(wait, cancel_futures=cancel_futures)
+
+    def _open(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(
+            self._count, mp_context=get_context("spawn"), initializer=_leave_in_time
+        )
+
+
+def _is_broken(future: Future[Any]) -> bool:
+    return future.done() and isinstance(future.exception(), BrokenExecutor)
+
+
+def _leave_in_time() -> None:
+    """A process of the pool leaves at Ctrl-C without a word, and never outlives its parent."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    Thread(target=_leave_with_parent, daemon=True).start()
+
+
+def _leave_with_parent() -> None:
+    parent = parent_process()
+    assert parent is not None
+    parent.join()  # a parent that was killed could not say goodbye
+    os._exit(1)
