@@ -52,7 +52,9 @@ def dask_cluster(address: str, *, patience_s: float = 30.0) -> Iterator[Executor
         except KilledWorker as error:
             raise WorkerError(f"{address}: workers die again and again ({error}).") from error
         except CancelledError as error:
-            raise WorkerError(f"{address}: the scheduler has gone away.") from error
+            raise WorkerError(
+                f"{address}: the scheduler has gone away; with --out, the same command goes on."
+            ) from error
 
 
 def _check_workers(client: Client, address: str, patience_s: float) -> None:

@@ -129,6 +129,18 @@ def test_monte_carlo_tells_what_it_found_and_writes_it(run, tmp_path):
     assert json.loads(again) == json.loads((tmp_path / "study/study.json").read_text())
 
 
+def test_monte_carlo_goes_on_in_its_folder_and_refuses_another_study_s(run, tmp_path):
+    words = ("monte-carlo", "outliers", "--out", "study", "--format", "parquet")
+    for trials in (20, 30):
+        status, _, error = run(*words, "-n", trials)
+        assert status == 0, error
+    assert len((tmp_path / "study/trials.csv").read_text().splitlines()) == 31
+    assert (tmp_path / "study/trials.parquet").exists()
+    status, _, error = run(*words, "-n", 30, "--seed", 2)
+    assert status == 2
+    assert "seed is 1 there, 2 here" in complaint(error)
+
+
 def test_monte_carlo_takes_parameters(run):
     words = ("monte-carlo", "outliers", "-n", 30, "--json")
     usual = json.loads(run(*words)[1])
@@ -143,6 +155,8 @@ def test_monte_carlo_takes_parameters(run):
         (("people", "-p", "gate_probability:=2.0"), "gate_probability"),
         (("outliers", "--paths", "x.csv"), "--paths"),
         (("people", "-n", 1, "--paths", "nowhere.csv"), "nowhere.csv"),
+        (("people", "--executor", "threads"), "needed is processes, or an address"),
+        (("people", "--format", "parquet"), "--out FOLDER"),
     ],
 )
 def test_what_monte_carlo_cannot_do_is_one_line_and_status_2(run, words, named):

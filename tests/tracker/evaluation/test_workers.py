@@ -119,28 +119,44 @@ def test_a_killed_process_changes_no_row(alone):
     assert_same_rows(study, alone)
 
 
+#: Tells the numbers of its processes whenever a unit has been written.
+STUDY = f"""
+import dataclasses
+import multiprocessing
+from tracker.evaluation.monte_carlo import monte_carlo
+from tracker.evaluation.scenario import SCENARIOS
+from tracker.evaluation.workers import Processes
+
+def tell(share):
+    if share > 0:
+        print(*(child.pid for child in multiprocessing.active_children()), flush=True)
+
+if __name__ == "__main__":
+    short = dataclasses.replace(SCENARIOS["people"], duration_s={SHORT.duration_s})
+    with Processes(2) as pool:
+        monte_carlo(short, {2 * TRIALS}, 2, executor=pool, progress=tell, folder="study")
+"""
+
+
 @pytest.mark.slow
-def test_a_study_killed_with_all_it_had_goes_on_to_the_same_bytes(tmp_path):
-    words = [
-        *(sys.executable, "-m", "tracker.cli", "monte-carlo", "outliers"),
-        *("-n", "30000", "-j", "2", "--out", "study"),
-    ]
+def test_a_study_killed_with_kill_9_leaves_nobody_behind_and_goes_on(tmp_path):
+    (tmp_path / "study.py").write_text(STUDY)
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
-    rows = tmp_path / "study" / "trials.csv"
-    study = subprocess.Popen(words, cwd=tmp_path, env=environment, stderr=subprocess.DEVNULL)
-    children = Path(f"/proc/{study.pid}/task/{study.pid}/children")
-    while not rows.exists():
-        assert study.poll() is None
-        time.sleep(0.02)
-    workers = [int(pid) for pid in children.read_text().split()] if children.exists() else []
-    study.kill()
+    study = subprocess.Popen(
+        [sys.executable, "study.py"], cwd=tmp_path, env=environment, stdout=subprocess.PIPE
+    )
+    with study.stdout:
+        workers = study.stdout.readline().split()
+        study.kill()
     study.wait()
+    rows = tmp_path / "study" / "trials.csv"
     written = rows.read_bytes()
-    subprocess.run(words, cwd=tmp_path, env=environment, check=True, capture_output=True)
-    monte_carlo("outliers", 30_000, folder=tmp_path / "whole")
+    monte_carlo(SHORT, 2 * TRIALS, seed=2, folder=tmp_path / "study")
+    monte_carlo(SHORT, 2 * TRIALS, seed=2, folder=tmp_path / "whole")
     assert rows.read_bytes() == (tmp_path / "whole" / "trials.csv").read_bytes()
-    assert rows.read_bytes().startswith(written[: written.rfind(b"\n") + 1])
-    assert not any(Path(f"/proc/{pid}").exists() for pid in workers)
+    assert rows.read_bytes().startswith(written)
+    assert len(workers) == 2
+    assert not any(Path(f"/proc/{int(pid)}/exe").exists() for pid in workers)
 
 
 @pytest.fixture(scope="module")
