@@ -35,7 +35,7 @@ EMPTY_TASKS = 2000
 def dask(count: int) -> Iterator[Executor]:
     from distributed import LocalCluster
 
-    words = {"threads_per_worker": 1, "dashboard_address": None}
+    words = {"threads_per_worker": 1, "dashboard_address": ":0"}
     with (
         LocalCluster(n_workers=count, **words) as cluster,
         dask_cluster(cluster.scheduler_address) as executor,

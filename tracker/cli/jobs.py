@@ -26,7 +26,7 @@ ExecutorOption = Annotated[
 
 
 @contextmanager
-def workers(executor: str, jobs: int, units: int) -> Iterator[Executor | None]:
+def open_executor(executor: str, jobs: int, units: int) -> Iterator[Executor | None]:
     """Whoever is asked for.
 
     Args:

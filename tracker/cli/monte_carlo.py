@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from tracker.cli.jobs import ExecutorOption, JobsOption, workers
+from tracker.cli.jobs import ExecutorOption, JobsOption, open_executor
 from tracker.cli.options import (
     ConfigOption,
     JsonOption,
@@ -87,7 +87,10 @@ def monte_carlo_command(
         _check_parquet(out)
     settings = parameters_from(config, param, default_config(chosen))
     useful = worthwhile_workers(chosen, trials)
-    with workers(executor, jobs, useful) as crew, counting_bar(errors, "trials", trials) as count:
+    with (
+        open_executor(executor, jobs, useful) as crew,
+        counting_bar(errors, "trials", trials) as count,
+    ):
         study = monte_carlo(
             chosen,
             trials,
