@@ -13,7 +13,7 @@ INSTALL := PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --disable-
 # that fail are run once more.
 REAL_TIME := -m "slow and not soak" -rs
 
-.PHONY: help demo test soak lint bench config setup
+.PHONY: help demo test soak lint docs bench config setup
 .DEFAULT_GOAL := help
 
 help:  ## this index
@@ -35,6 +35,9 @@ lint: $(VENV)/.installed-lint  ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: $(VENV)/.installed-docs  ## build the pages of the documentation into site/
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet
 
 bench:  ## time the product against its peers, some of which want numpy 1
 	@$(MAKE) --no-print-directory VENV=.venv-bench .venv-bench/.installed-bench
