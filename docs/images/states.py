@@ -76,7 +76,7 @@ def draw(
             lane.axvline(at_s, color=FADED, linewidth=0.8, linestyle=":")
     lanes[2].set_yticks([0.0, 0.5, 1.0])
     lanes[2].set_ylim(0.0, 1.08)
-    events = ((HAND_UP_S[0], "hand up"), (HAND_UP_S[1], "hand down, seen by the laser"))
+    events = ((HAND_UP_S[0], "hand up"), (HAND_UP_S[1], "hand down, legs seen"))
     for at_s, what in (*events, (LEAVES_S, "has left")):
         above = lanes[0].get_xaxis_transform()
         lanes[0].text(at_s, 1.1, what, transform=above, fontsize=10, color=INK)

@@ -87,19 +87,24 @@ def monte_carlo_command(
         _check_parquet(out)
     settings = parameters_from(config, param, default_config(chosen))
     useful = worthwhile_workers(chosen, trials)
-    with (
-        open_executor(executor, jobs, useful) as crew,
-        counting_bar(errors, "trials", trials) as count,
-    ):
-        study = monte_carlo(
-            chosen,
-            trials,
-            seed,
-            settings,
-            executor=crew,
-            progress=lambda share: count(round(share * trials)),
-            folder=out,
-        )
+    try:
+        with (
+            open_executor(executor, jobs, useful) as crew,
+            counting_bar(errors, "trials", trials) as count,
+        ):
+            study = monte_carlo(
+                chosen,
+                trials,
+                seed,
+                settings,
+                executor=crew,
+                progress=lambda share: count(round(share * trials)),
+                folder=out,
+            )
+    except KeyboardInterrupt:
+        if out is not None:
+            errors.print(f"\nThe trials are in {out}; the same command goes on.", soft_wrap=True)
+        raise
     study = replace(study, name=scenario)
     files: tuple[Path, ...] = ()
     if out is not None:
