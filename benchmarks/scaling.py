@@ -44,14 +44,12 @@ def dask(count: int) -> Iterator[Executor]:
 
 
 def enough_trials(scenario: str, seconds: float) -> int:
-    """As many as one process runs in that time, in whole units."""
+    """As many as one process runs in about that time, and two can share."""
+    least = 4 if scenario == "people" else 500
     monte_carlo(scenario, 2)  # compiles
-    begin_s, trials = time.perf_counter(), 4 if scenario == "people" else 1000
-    monte_carlo(scenario, trials)
-    rate = trials / (time.perf_counter() - begin_s)
-    return (
-        max(round(rate * seconds / 500), 1) * 500 if rate > 50 else round(rate * seconds / 4) * 4
-    )
+    begin_s = time.perf_counter()
+    monte_carlo(scenario, least)
+    return least * max(round(seconds / (time.perf_counter() - begin_s)), 1)
 
 
 def main() -> None:
