@@ -29,6 +29,7 @@ from tracker.ranging import (
 )
 from tracker.rate_limiter import RateLimiter
 from tracker.tracking import PersonTracker, View, approach_pose, customer_pose
+from tracker.tracking.innovations import Watch
 from tracker.transforms import StampedTransform, TransformBuffer, Transforms
 
 #: Scans remembered, and images that may wait at a time; older ones give way.
@@ -47,6 +48,7 @@ class Pipeline:
         detector: Finds hands; by default what `config.detector` names.
         transforms: Knows where frames were; by default a buffer of the project's own. A node may
             pass one around tf2's.
+        watch: Passed on to the tracker.
     """
 
     def __init__(
@@ -54,6 +56,8 @@ class Pipeline:
         config: Config | None = None,
         detector: HandDetector | None = None,
         transforms: Transforms | None = None,
+        *,
+        watch: Watch | None = None,
     ) -> None:
         self.config = config or Config()
         if detector is None:
@@ -61,7 +65,7 @@ class Pipeline:
 
             detector = open_detector(self.config)
         self.detector = detector
-        self.tracker = PersonTracker(self.config)
+        self.tracker = PersonTracker(self.config, watch=watch)
         self.transforms: Transforms = transforms or TransformBuffer()
         self.camera = _configured_camera(self.config)
         self._limiter = RateLimiter(self.config.processing_rate)

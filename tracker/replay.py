@@ -24,6 +24,7 @@ from tracker.replay_outputs import ReplayOutputs
 from tracker.report.history import History
 from tracker.report.overview import draw_overview
 from tracker.report.summary import summarize, write_summary
+from tracker.tracking.innovations import Watch
 from tracker.transforms import StampedTransform
 
 #: Told what share of the recording is done, from 0 to 1, and how many images were processed.
@@ -58,6 +59,7 @@ def replay(
     stamps: str = "header",
     detector: HandDetector | None = None,
     progress: Progress | None = None,
+    watch: Watch | None = None,
 ) -> Replay:
     """Run a recording through the pipeline and write everything that comes of it.
 
@@ -72,6 +74,7 @@ def replay(
         stamps: "header" or "log": which of a message's times counts.
         detector: Finds hands; by default MediaPipe's models.
         progress: Told how far it is.
+        watch: Passed on to the tracker, as an `innovation_log.InnovationLog`.
 
     Raises:
         RecordingError: The source cannot be opened or holds neither images nor scans, or the
@@ -88,7 +91,7 @@ def replay(
             if not recording.has_scans or recording.image_topics:
                 recording.require_images()
             problems.remark("no images in the recording: nobody can be seen raising a hand")
-        pipeline = Pipeline(config, detector)
+        pipeline = Pipeline(config, detector, watch=watch)
         with ReplayOutputs(out, config) as outputs:
 
             def take(image: CameraImage, result: FrameResult) -> None:

@@ -16,8 +16,8 @@ from tracker.evaluation.people_scene import draw_scene
 from tracker.evaluation.people_sensing import Sensed, sense
 from tracker.evaluation.raises import count_raises
 from tracker.evaluation.scenario import PeopleScenario
+from tracker.evaluation.tracker_steps import Step, run_steps
 from tracker.evaluation.trial_seed import trial_rng
-from tracker.tracking import PersonTracker
 
 CUTOFF_M = 1.0
 
@@ -148,17 +148,22 @@ def people_trial(
     Raises:
         SceneError: The recording of paths cannot be used.
     """
-    tracker, scores = PersonTracker(config), TrialScores(config)
-    for truth, sensed in draw_people_trial(scenario, seed, trial):
-        tracks = tracker.step(
-            truth.stamp_ns,
-            sensed.measurements,
-            sensed.view.sensor_pose[:2],
-            view=sensed.view,
-            scan_view=sensed.scan_view,
-        )
-        scores.add(truth, tracks)
+    frames = draw_people_trial(scenario, seed, trial)
+    scores = TrialScores(config)
+    tracks = run_steps((_step(truth, sensed) for truth, sensed in frames), config)
+    for (truth, _), those in zip(frames, tracks, strict=True):
+        scores.add(truth, those)
     return scores.row()
+
+
+def people_steps(scenario: PeopleScenario, seed: int, trial: int) -> tuple[Step, ...]:
+    """What one trial gives the tracker; see `draw_people_trial`."""
+    return tuple(_step(*frame) for frame in draw_people_trial(scenario, seed, trial))
+
+
+def _step(truth: Truth, sensed: Sensed) -> Step:
+    x_m, y_m = sensed.view.sensor_pose[:2].tolist()
+    return Step(truth.stamp_ns, sensed.measurements, (x_m, y_m), sensed.view, sensed.scan_view)
 
 
 def _mean(parts: list[np.ndarray]) -> float:

@@ -5,6 +5,7 @@ Whoever is new, gone or tracked twice is left to `person_tracker`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +16,8 @@ from tracker.tracking.admission import once_per_person, usable, with_hand_bias
 from tracker.tracking.appearance import Appearance, recognizable
 from tracker.tracking.association import assign, log_odds
 from tracker.tracking.converted import convert
-from tracker.tracking.gating import find_pairs
+from tracker.tracking.gating import Pairs, find_pairs
+from tracker.tracking.innovations import Round, Watch
 from tracker.tracking.joint_probability import marginals
 from tracker.tracking.life_cycle import believe, count_detections, fade, still_there
 from tracker.tracking.modes import Belief, predict_modes
@@ -61,6 +63,7 @@ def observe(
     config: Config,
     view: View | None,
     scan_view: View | None,
+    watch: Watch | None = None,
 ) -> Observed:
     """Carry everybody over the interval, and correct them by what was measured.
 
@@ -72,15 +75,23 @@ def observe(
         config: The tracking group.
         view: Where the camera could see hands; None means everywhere.
         scan_view: Where the scan could show people; None where there is no scan.
+        watch: Told of both rounds of association, raised hands first.
     """
+    tell = None if watch is None else _teller(watch, stamp_ns, people)
     raised, others = _admit(measurements, dt_s, config)
     people, in_camera, in_view = _predict(people, dt_s, config, view, scan_view)
     hand_chance = np.where(people.streaks.missed == 0, 1.0, RAISES_AGAIN)
     belief, existence, called_by = _update(
-        people.belief, people.existence, people.appearance, raised, in_camera * hand_chance, config
+        people.belief,
+        people.existence,
+        people.appearance,
+        raised,
+        in_camera * hand_chance,
+        config,
+        tell,
     )
     belief, existence, shown_by = _update(
-        belief, existence, people.appearance, others, in_view, config
+        belief, existence, people.appearance, others, in_view, config, tell
     )
     is_called, is_shown = called_by >= 0, shown_by >= 0
     is_seen = is_called | is_shown
@@ -150,13 +161,17 @@ def _update(
     claims: Measurements,
     visible: FloatArray,
     config: Config,
+    tell: Callable[..., None] | None,
 ) -> tuple[Belief, FloatArray, IntArray]:
     """Associate and correct; also says which measurement each track got, or -1."""
     got = np.full(len(existence), -1, dtype=np.int64)
+    chance = np.maximum(visible * config.detection_probability, DETECTION_MIN)
     if len(existence) == 0 or len(claims) == 0:
+        if tell is not None:
+            nothing = Pairs.join([], len(belief.weight))
+            tell(belief, existence, chance, claims, nothing, nothing.track)
         return belief, existence, got
     pairs = find_pairs(belief, claims, config)
-    chance = np.maximum(visible * config.detection_probability, DETECTION_MIN)
     odds = log_odds(pairs, belief.weight, chance)
     if claims.appearance is not None:
         clothes = appearance.log_ratio(claims.appearance, pairs.track, pairs.claim)
@@ -164,6 +179,8 @@ def _update(
     chosen = assign(pairs, odds, len(existence))
     rows = np.flatnonzero(chosen >= 0)
     hits = chosen[rows]
+    if tell is not None:
+        tell(belief, existence, chance, claims, pairs, hits)
     if config.association == "jpda":
         belief = update_jointly(belief, pairs, marginals(pairs.track, pairs.claim, odds))
     else:
@@ -172,6 +189,10 @@ def _update(
     evidence = np.zeros(len(existence))
     evidence[rows] = odds[hits] + np.log(1.0 - chance[rows])
     return belief, believe(existence, evidence), got
+
+
+def _teller(watch: Watch, stamp_ns: int, people: People) -> Callable[..., None]:
+    return lambda *numbers: watch(Round(stamp_ns, people.id, *numbers))
 
 
 def _left(claims: Measurements, taken: IntArray) -> Measurements:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from tracker.tracking import frame
 from tracker.tracking.admission import is_close
 from tracker.tracking.appearance import Appearance
 from tracker.tracking.filter import initial_state
+from tracker.tracking.innovations import Watch
 from tracker.tracking.life_cycle import BIRTH_EXISTENCE, count_detections, still_there
 from tracker.tracking.modes import Belief
 from tracker.tracking.people import People
@@ -32,13 +33,22 @@ class PersonTracker:
 
     Args:
         config: The tracking and selection groups.
-        compiled: Let numba (the extra `fast`) do a frame's work, if it is installed; the numbers
-            are the same up to rounding.
+        watch: Told of every round of association, before it counts; see `tracking.innovations`.
+        compiled: Let numba (the extra `fast`) do a frame's work, if it is installed and nobody
+            watches; the numbers are the same up to rounding.
     """
 
-    def __init__(self, config: Config | None = None, *, compiled: bool = True) -> None:
+    def __init__(
+        self,
+        config: Config | None = None,
+        *,
+        watch: Watch | None = None,
+        compiled: bool = True,
+    ) -> None:
         self._config = config or Config()
-        self._observe = (_compiled_observe() if compiled else None) or frame.observe
+        self._observe: Callable[..., frame.Observed] = partial(frame.observe, watch=watch)
+        if compiled and watch is None:
+            self._observe = _compiled_observe() or frame.observe
         self._next_id = 1
         self._stamp_ns: int | None = None
         self._people = self._nobody()
