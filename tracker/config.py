@@ -6,6 +6,7 @@ from this one model. The first group is the specification's table 1, by its own 
 
 from __future__ import annotations
 
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,6 +17,23 @@ from tracker.errors import ConfigError
 NODE_NAME = "hand_detector"
 
 
+@dataclass(frozen=True, slots=True)
+class Search:
+    """Where `raised-hand tune` looks for a parameter; choices are tried one and all.
+
+    Attributes:
+        kind: What it is about: process or measurement noise, clutter, life (of tracks), method.
+        low: From, of a number ...
+        high: ... and to.
+        log: Steps are factors.
+    """
+
+    kind: Literal["process", "measurement", "clutter", "life", "method"]
+    low: float = 0.0
+    high: float = 0.0
+    log: bool = False
+
+
 def _parameter(
     default: Any,
     description: str,
@@ -23,10 +41,12 @@ def _parameter(
     unit: str = "",
     group: str,
     live: bool = False,
+    search: Search | None = None,
     **bounds: Any,
 ) -> Any:
     """A field with its unit, its group in the documentation, and whether it may change live."""
     extra: dict[str, Any] = {"unit": unit, "group": group, "live": live}
+    extra["search"] = None if search is None else asdict(search)
     return Field(default, description=description, json_schema_extra=extra, **bounds)
 
 
@@ -263,10 +283,12 @@ class Config(BaseModel):
     range_std_m: float = _parameter(
         0.08, "Range noise of a person in the scan: the scanner's own, and legs are no point.",
         unit="m", group="ranging", live=True, gt=0.0, le=2.0,
+        search=Search("measurement", 0.02, 0.6, log=True),
     )  # fmt: skip
     hand_offset_std_m: float = _parameter(
         0.2, "How far a raised hand stands beside the body, as standard deviation.",
         unit="m", group="ranging", live=True, ge=0.0, le=1.0,
+        search=Search("measurement", 0.05, 0.5, log=True),
     )  # fmt: skip
     torso_offset_std_m: float = _parameter(
         0.08, "Where the body's pose is known: how far its legs stand beside the middle of "
@@ -296,59 +318,72 @@ class Config(BaseModel):
         "imm", "How people move: imm (they stand or walk, and change over) or cv (nearly constant "
         "velocity).",
         group="tracking", live=True,
+        search=Search("method"),
     )  # fmt: skip
     measurement_model: Literal["polar", "converted"] = _parameter(
         "polar", "Bearing and range are compared where they were taken (polar), or as points of "
         "the fixed frame (converted).",
         group="tracking", live=True,
+        search=Search("method"),
     )  # fmt: skip
     association: Literal["hungarian", "jpda"] = _parameter(
         "jpda", "Whose measurement is it? jpda: every measurement in the gate counts by its "
         "probability; hungarian: the most likely one-to-one assignment, somewhat cheaper.",
         group="tracking", live=True,
+        search=Search("method"),
     )  # fmt: skip
     acceleration_density: float = _parameter(
         0.6, "Process noise: power spectral density of the acceleration of people who walk.",
         unit="m^2/s^3", group="tracking", live=True, gt=0.0, le=100.0,
+        search=Search("process", 0.05, 10.0, log=True),
     )  # fmt: skip
     stand_speed_std_mps: float = _parameter(
         0.1, "`motion: imm`: how fast people sway who stand, per axis.",
         unit="m/s", group="tracking", live=True, gt=0.0, le=2.0,
+        search=Search("process", 0.02, 0.5, log=True),
     )  # fmt: skip
     stand_duration_s: float = _parameter(
         3.0, "`motion: imm`: how long people stand, on average ...",
         unit="s", group="tracking", live=True, gt=0.1, le=3600.0,
+        search=Search("process", 0.5, 30.0, log=True),
     )  # fmt: skip
     walk_duration_s: float = _parameter(
         5.0, "... and how long they walk.",
         unit="s", group="tracking", live=True, gt=0.1, le=3600.0,
+        search=Search("process", 0.5, 30.0, log=True),
     )  # fmt: skip
     initial_speed_std_mps: float = _parameter(
         0.5, "Spread of the speed of a new customer, per axis.",
         unit="m/s", group="tracking", live=True, gt=0.0, le=10.0,
+        search=Search("process", 0.1, 2.0, log=True),
     )  # fmt: skip
     outlier_dof: float = _parameter(
         4.0, "Ranges are heavy-tailed: degrees of freedom of their Student-t noise; 0 takes them "
         "for Gaussian.",
         group="tracking", live=True, ge=0.0, le=1000.0,
+        search=Search("measurement", 1.0, 30.0, log=True),
     )  # fmt: skip
     hand_bias_duration_s: float = _parameter(
         0.0, "A hand stands to the same side of the body for so long: without a range, the errors "
         "of its bearing are alike from frame to frame. 0 takes them for independent.",
         unit="s", group="tracking", live=True, ge=0.0, le=60.0,
+        search=Search("measurement", 0.0, 3.0),
     )  # fmt: skip
     gate_probability: float = _parameter(
         0.9999, "Share of true measurements that the gate lets through; people start and turn at "
         "once, so that a narrow gate loses them.",
         group="tracking", live=True, gt=0.5, lt=1.0,
+        search=Search("clutter", 0.9, 0.99999),
     )  # fmt: skip
     innovation_floor_m: float = _parameter(
         0.05, "No gate is narrower than that of this standard deviation, however sure the filter.",
         unit="m", group="tracking", live=True, ge=0.0, le=1.0,
+        search=Search("measurement", 0.0, 0.3),
     )  # fmt: skip
     detection_probability: float = _parameter(
         0.9, "Chance that a raised hand, or a person in the scan, is detected in a frame.",
         group="tracking", live=True, ge=0.05, le=0.99,
+        search=Search("clutter", 0.3, 0.98),
     )  # fmt: skip
     appearance_weight: float = _parameter(
         0.0, "What likeness of the clothes counts when a measurement is assigned: 1 as much as it "
@@ -359,6 +394,7 @@ class Config(BaseModel):
     newcomer_density: float = _parameter(
         0.005, "Measurements of nobody known, false ones and new customers', per frame and area.",
         unit="1/m^2", group="tracking", live=True, gt=0.0, le=10.0,
+        search=Search("clutter", 0.0005, 0.2, log=True),
     )  # fmt: skip
     confirmation: Literal["m_of_n", "existence"] = _parameter(
         "m_of_n", "What makes a customer: m_of_n (raised-hand detections in a window of frames) "
@@ -372,19 +408,23 @@ class Config(BaseModel):
     confirm_detections: int = _parameter(
         2, "`confirmation: m_of_n`: raised-hand detections that make a customer ...",
         unit="frames", group="tracking", live=True, ge=1, le=100,
+        search=Search("life", 1, 6),
     )  # fmt: skip
     confirm_window: int = _parameter(
         3, "... out of so many processed frames.",
         unit="frames", group="tracking", live=True, ge=1, le=100,
+        search=Search("life", 2, 10),
     )  # fmt: skip
     delete_after_s: float = _parameter(
         2.0, "A customer whom neither hand nor scan has shown for so long, though in view, is "
         "gone.",
         unit="s", group="tracking", live=True, gt=0.0, le=3600.0,
+        search=Search("life", 0.3, 6.0, log=True),
     )  # fmt: skip
     mature_detections: int = _parameter(
         5, "Customers with fewer raised-hand detections are gone sooner, in proportion.",
         unit="frames", group="tracking", live=True, ge=1, le=1000,
+        search=Search("life", 1, 20),
     )  # fmt: skip
     forget_after_s: float = _parameter(
         60.0, "A customer whose hand has not been up for so long is forgotten, seen or not.",
@@ -393,6 +433,7 @@ class Config(BaseModel):
     same_person_distance_m: float = _parameter(
         0.45, "Two raised hands closer together than this belong to one person.",
         unit="m", group="tracking", live=True, ge=0.0, le=2.0,
+        search=Search("life", 0.2, 1.0),
     )  # fmt: skip
     raise_streak: int = _parameter(
         2, "Consecutive detections after which a hand counts as raised (algorithm 1).",
@@ -531,10 +572,16 @@ def allowed_values(name: str) -> str:
 
 
 def parameter_extra(name: str) -> dict[str, Any]:
-    """Unit, group and `live` (may it change while running) of a parameter."""
+    """Unit, group, `live` (may it change while running) and `search` of a parameter."""
     extra = Config.model_fields[name].json_schema_extra
     assert isinstance(extra, dict)
     return extra
+
+
+def parameter_search(name: str) -> Search | None:
+    """Where tuning looks for a parameter; None where it leaves it alone."""
+    search = parameter_extra(name)["search"]
+    return None if search is None else Search(**search)
 
 
 def _node_parameters(document: Any, path: Path) -> dict[str, Any]:

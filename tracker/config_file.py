@@ -28,8 +28,21 @@ GROUP_TITLES = {
 
 def default_yaml() -> str:
     """The ROS parameter file of every default, with meaning, unit and range as comments."""
+    return parameter_yaml(
+        Config(),
+        "Every parameter with its default; written from tracker/config.py by `make config`.",
+    )
+
+
+def parameter_yaml(config: Config, title: str) -> str:
+    """The ROS parameter file of a configuration; `Config.from_yaml` and the node read it.
+
+    Args:
+        config: Every parameter.
+        title: One line, the first comment.
+    """
     lines = [
-        "# Every parameter with its default; written from tracker/config.py by `make config`.",
+        f"# {title}",
         "# live: may change while the node runs.",
         f"{NODE_NAME}:",
         "  ros__parameters:",
@@ -40,7 +53,7 @@ def default_yaml() -> str:
             live = "; live" if parameter_extra(name)["live"] else ""
             words = wrap(_description(name), 90, break_on_hyphens=False)
             lines += [f"    # {line}" for line in [*words, f"({allowed_values(name)}{live})"]]
-            lines.append(f"    {name}: {_written(name)}")
+            lines.append(f"    {name}: {json.dumps(getattr(config, name))}")
     return "\n".join(lines) + "\n"
 
 

@@ -20,6 +20,7 @@ from tracker.cli.monte_carlo import monte_carlo_command
 from tracker.cli.options import complain, errors
 from tracker.cli.replay import replay_command
 from tracker.cli.simulate import simulate_command
+from tracker.cli.tune import tune_command
 from tracker.errors import ConfigError, SceneError, TrackerError
 
 app = typer.Typer(
@@ -38,6 +39,7 @@ app.command("play")(play_command)
 app.command("echo")(echo_command)
 app.command("evaluate")(evaluate_command)
 app.command("monte-carlo")(monte_carlo_command)
+app.command("tune")(tune_command)
 app.add_typer(models_app, name="models", no_args_is_help=True)
 
 

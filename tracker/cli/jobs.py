@@ -62,9 +62,14 @@ def processes(jobs: int, units: int) -> Iterator[Executor | None]:
     """
     from tracker.evaluation.workers import Processes
 
-    jobs = min(jobs or os.cpu_count() or 1, units)
+    jobs = workers(jobs, units)
     if jobs <= 1:
         yield None
         return
     with Processes(jobs) as executor:
         yield executor
+
+
+def workers(jobs: int, units: int) -> int:
+    """How many processes that are; 1 for this one."""
+    return min(jobs or os.cpu_count() or 1, units)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import isnan
 
 from rich.console import Console
 from rich.progress import (
@@ -76,6 +77,38 @@ def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
             if task is None:
                 task = progress.add_task(what, total=total, completed=done)
             progress.update(task, completed=done)
+
+        yield report
+
+
+@contextmanager
+def trials_bar(console: Console, trials: int) -> Iterator[Callable[[int, float], None]]:
+    """Show how many trials of a search are done, and the best figure so far.
+
+    Args:
+        console: Where to.
+        trials: In all.
+
+    Yields:
+        A function of the number of trials and the figure (NaN before there is one).
+    """
+    columns = (
+        TextColumn("{task.description:<22}"),
+        BarColumn(),
+        TextColumn("{task.completed}/{task.total}"),
+        TextColumn("{task.fields[best]}"),
+        TimeRemainingColumn(),
+    )
+    if not console.is_terminal:
+        console.print(f"Trying {trials} configurations ...", highlight=False)
+        yield lambda done, best: None
+        return
+    with Progress(*columns, console=console) as progress:
+        task = progress.add_task("Trying", total=trials, best="")
+
+        def report(done: int, best: float) -> None:
+            text = "" if isnan(best) else f"best {best:.4g}"
+            progress.update(task, completed=done, best=text)
 
         yield report
 

@@ -97,7 +97,7 @@ def innovations_of_scenario(
     config = default_config(scenario) if config is None else config
     log = InnovationLog()
     for trial in range(trials):
-        for _ in run_steps(people_steps(scenario, seed, trial), config, log):
+        for _ in run_steps(people_steps(scenario, config, seed, trial), config, log):
             pass
     return log.innovations
 

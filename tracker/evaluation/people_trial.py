@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from tracker.config import Config
@@ -16,6 +18,7 @@ from tracker.evaluation.people_scene import draw_scene
 from tracker.evaluation.people_sensing import Sensed, sense
 from tracker.evaluation.raises import count_raises
 from tracker.evaluation.scenario import PeopleScenario
+from tracker.evaluation.stated_noise import restate
 from tracker.evaluation.tracker_steps import Step, run_steps
 from tracker.evaluation.trial_seed import trial_rng
 
@@ -150,20 +153,28 @@ def people_trial(
     """
     frames = draw_people_trial(scenario, seed, trial)
     scores = TrialScores(config)
-    tracks = run_steps((_step(truth, sensed) for truth, sensed in frames), config)
+    tracks = run_steps(_steps(scenario, frames, config), config)
     for (truth, _), those in zip(frames, tracks, strict=True):
         scores.add(truth, those)
     return scores.row()
 
 
-def people_steps(scenario: PeopleScenario, seed: int, trial: int) -> tuple[Step, ...]:
-    """What one trial gives the tracker; see `draw_people_trial`."""
-    return tuple(_step(*frame) for frame in draw_people_trial(scenario, seed, trial))
+def people_steps(
+    scenario: PeopleScenario, config: Config, seed: int, trial: int
+) -> tuple[Step, ...]:
+    """What one trial gives the tracker; see `people_trial`."""
+    return tuple(_steps(scenario, draw_people_trial(scenario, seed, trial), config))
 
 
-def _step(truth: Truth, sensed: Sensed) -> Step:
-    x_m, y_m = sensed.view.sensor_pose[:2].tolist()
-    return Step(truth.stamp_ns, sensed.measurements, (x_m, y_m), sensed.view, sensed.scan_view)
+def _steps(
+    scenario: PeopleScenario, frames: list[tuple[Truth, Sensed]], config: Config
+) -> Iterator[Step]:
+    for truth, sensed in frames:
+        measurements = sensed.measurements
+        if not scenario.noise_known:
+            measurements = restate(measurements, config, scenario.hand_offset_m)
+        x_m, y_m = sensed.view.sensor_pose[:2].tolist()
+        yield Step(truth.stamp_ns, measurements, (x_m, y_m), sensed.view, sensed.scan_view)
 
 
 def _mean(parts: list[np.ndarray]) -> float:

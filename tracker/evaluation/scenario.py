@@ -87,6 +87,8 @@ class PeopleScenario:
         appearance_noise: Raised hands come with a histogram of their owner's clothes, of which up
             to this share is something else, anew in every raise; None for no histograms. 0.6
             keeps people as far apart as pictures do (`benchmarks/clothes.py`).
+        noise_known: Measurements state their true noise; otherwise what the tracker's parameters
+            say, as on a robot (`range_std_m`, `hand_offset_std_m`).
         parameters: Names and values that the tracker is set to, where they are not its defaults.
     """
 
@@ -117,6 +119,7 @@ class PeopleScenario:
     pose_std_m: float = 0.0
     pose_std_deg: float = 0.0
     appearance_noise: float | None = None
+    noise_known: bool = True
     parameters: Parameters = ()
 
 
@@ -269,6 +272,22 @@ SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
         ),
         "hands-down-scans": ScanScenario(
             title="The same in a furnished room, with people found in ray-cast scans.",
+        ),
+        "cheap-lidar": PeopleScenario(
+            title="A cheap laser among people who hardly stop, and nobody has told the tracker.",
+            people=(3, 6),
+            pause_s=1.0,
+            hand_down_s=(3.0, 10.0),
+            range_std_m=0.25,
+            outlier_share=0.05,
+            range_missing_share=0.1,
+            detection_probability=0.7,
+            clutter_per_frame=0.1,
+            scan_detection_probability=0.6,
+            scan_clutter_per_frame=1.0,
+            latency_s=0.05,
+            noise_known=False,
+            **_HANDS,
         ),
         "rough": PeopleScenario(
             title="A turning robot: latency, pose noise, range outliers, missing ranges.",

@@ -77,7 +77,7 @@ def observe(
         scan_view: Where the scan could show people; None where there is no scan.
         watch: Told of both rounds of association, raised hands first.
     """
-    tell = None if watch is None else _teller(watch, stamp_ns, people)
+    tell = None if watch is None else _teller(watch, stamp_ns, people, config)
     raised, others = _admit(measurements, dt_s, config)
     people, in_camera, in_view = _predict(people, dt_s, config, view, scan_view)
     hand_chance = np.where(people.streaks.missed == 0, 1.0, RAISES_AGAIN)
@@ -191,8 +191,8 @@ def _update(
     return belief, believe(existence, evidence), got
 
 
-def _teller(watch: Watch, stamp_ns: int, people: People) -> Callable[..., None]:
-    return lambda *numbers: watch(Round(stamp_ns, people.id, *numbers))
+def _teller(watch: Watch, stamp_ns: int, people: People, config: Config) -> Callable[..., None]:
+    return lambda *numbers: watch(Round(stamp_ns, people.id, *numbers, config))
 
 
 def _left(claims: Measurements, taken: IntArray) -> Measurements:

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
+from scipy.special import gammaln
 
+from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel, Measurements
 from tracker.tracking.filter import compare
 from tracker.tracking.gating import Pairs
@@ -33,6 +35,7 @@ class Round:
         claims: As the filter sees them, with the noise that it supposes.
         pairs: Inside the gates.
         chosen: Rows of `pairs` that the most likely assignment takes.
+        config: The tracker's parameters.
     """
 
     stamp_ns: int
@@ -43,6 +46,7 @@ class Round:
     claims: Measurements
     pairs: Pairs
     chosen: IntArray
+    config: Config
 
 
 Watch: TypeAlias = Callable[[Round], None]
@@ -94,20 +98,35 @@ def innovations_of(round_: Round) -> Innovations:
     """Innovations of one round's assigned pairs; modes of motion count by their probability."""
     pairs = round_.pairs[round_.chosen]
     claims = round_.claims[pairs.claim]
-    weight = round_.belief.weight[:, pairs.track]
     mean, covariance = round_.belief.merged()
     mean, covariance = mean[pairs.track], covariance[pairs.track]
     innovation, jacobian, noise = compare(mean, claims)
     spread = jacobian @ covariance[:, :2, :2] @ np.swapaxes(jacobian, -1, -2) + noise
     solved = np.linalg.solve(spread, innovation[..., None])[..., 0]
-    polar = claims.model == MeasurementModel.POLAR
     return Innovations(
         stamp_ns=np.full(len(pairs), round_.stamp_ns, dtype=np.int64),
         id=round_.id[pairs.track],
         innovation=innovation,
         covariance=spread,
-        ranged=~(polar & np.isnan(claims.values[:, 1])),
+        ranged=~np.isnan(claims.values[:, 1]),
         raised=claims.raised,
-        log_likelihood=np.logaddexp.reduce(pairs.log_likelihood + np.log(weight), axis=0),
+        log_likelihood=log_densities(round_, pairs),
         nis=(innovation * solved).sum(axis=-1),
     )
+
+
+def log_densities(round_: Round, pairs: Pairs) -> FloatArray:
+    """Log-density of each pair's measurement, were it the track's, shape (P,).
+
+    Modes of motion count by their probability. A Student-t's tail has its own normalization here,
+    so that densities under different `outlier_dof` compare; the assignment does without.
+    """
+    weight = round_.belief.weight[:, pairs.track]
+    density = np.logaddexp.reduce(pairs.log_likelihood + np.log(weight), axis=0)
+    dof = round_.config.outlier_dof
+    if dof > 0.0:
+        claims = round_.claims[pairs.claim]
+        tailed = (claims.model == MeasurementModel.POLAR) & ~np.isnan(claims.values[:, 1])
+        tail = gammaln((dof + 1.0) / 2.0) - gammaln(dof / 2.0) - 0.5 * np.log(dof / 2.0)
+        density = density + np.where(tailed, tail, 0.0)
+    return np.asarray(density)

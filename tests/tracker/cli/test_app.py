@@ -41,6 +41,7 @@ def complaint(error):
         ("replay",),
         ("simulate",),
         ("monte-carlo",),
+        ("tune",),
         ("evaluate",),
         ("models",),
         ("models", "fetch"),

@@ -72,7 +72,7 @@ def test_watching_changes_no_track():
     rng = np.random.default_rng(4)
     frames = [hand(0.1 * rng.normal(), 3.0 + 0.1 * rng.normal()) for _ in range(30)]
     _, seen = watched(frames, Config())
-    tracker = PersonTracker(Config())
+    tracker = PersonTracker(Config(), compiled=False)
     for number, (claims, expected) in enumerate(zip(frames, seen, strict=True)):
         tracks = tracker.step(number * PERIOD_NS, claims)
         np.testing.assert_array_equal(tracks.mean, expected.mean)

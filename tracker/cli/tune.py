@@ -1,0 +1,190 @@
+"""`raised-hand tune`: the parameters that serve your robot best, and whether they truly do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tracker.cli.jobs import JobsOption, processes, workers
+from tracker.cli.options import (
+    ConfigOption,
+    JsonOption,
+    ParameterOption,
+    console,
+    errors,
+    parameters_from,
+    print_files,
+    print_json,
+)
+from tracker.cli.progress import bar, fetch_models_if_needed, trials_bar
+from tracker.config import Config
+from tracker.errors import ConfigError, RecordingError
+
+if TYPE_CHECKING:
+    from tracker.evaluation.tuning_objective import Objective
+
+_SCENES, _RECORDINGS = "Scenarios", "Recordings"
+
+
+def tune_command(
+    source: Annotated[
+        str | None,
+        typer.Argument(
+            help="A scenario by name, or a recording that `replay` reads. Without one, the "
+            "scenarios and everything that can be tuned are listed."
+        ),
+    ] = None,
+    params: Annotated[
+        str | None,
+        typer.Option(
+            help="What to search, separated by commas: names of parameters, or process, "
+            "measurement, clutter, life, method. Default: all but the methods, and all but life "
+            "on recordings."
+        ),
+    ] = None,
+    trials: Annotated[
+        int, typer.Option("--trials", "-n", help="In all; a study that is there counts.", min=1)
+    ] = 200,
+    storage: Annotated[
+        str | None,
+        typer.Option(help="Optuna storage, as in sqlite:///my.db; by default tuning.db in --out."),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of the scenes, and of the search.", min=0)] = 1,
+    config: ConfigOption = None,
+    param: ParameterOption = None,
+    jobs: JobsOption = 1,
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="Folder for best.yaml, tuning.json, tuning.png.")
+    ] = Path("tuning"),
+    as_json: JsonOption = False,
+    scenes: Annotated[
+        int,
+        typer.Option(help="Scenes that every trial sees.", min=1, rich_help_panel=_SCENES),
+    ] = 6,
+    scene_s: Annotated[
+        float,
+        typer.Option(help="Length of each, in seconds.", min=1.0, rich_help_panel=_SCENES),
+    ] = 8.0,
+    unseen: Annotated[
+        int,
+        typer.Option(
+            help="Whole scenes, seen by no trial, for the verdict.", min=2, rich_help_panel=_SCENES
+        ),
+    ] = 40,
+    image_topic: Annotated[
+        str, typer.Option(help="Camera images.", rich_help_panel=_RECORDINGS)
+    ] = "/image_raw",
+    scan_topic: Annotated[
+        str, typer.Option(help="LiDAR scans.", rich_help_panel=_RECORDINGS)
+    ] = "/scan",
+    camera_info_topic: Annotated[
+        str, typer.Option(help="Intrinsics.", rich_help_panel=_RECORDINGS)
+    ] = "/camera_info",
+) -> None:
+    """Search for the parameters that serve a scenario or your own recording best.
+
+    On a scenario truth is known, and less GOSPA is better. On a recording,
+    better is who foretells where the next measurement will be. The verdict
+    is about what the search has never seen: other scenes, or the rest of the
+    recording.
+
+    [bold]raised-hand tune cheap-lidar[/bold]   what a cheap laser wants
+
+    [bold]raised-hand tune my_robot.mcap[/bold]   what your own robot wants
+
+    [bold]raised-hand tune rough --params process,range_std_m -n 50[/bold]   only these
+
+    [bold]raised-hand tune rough -c robot.yaml -j 2[/bold]   from your own file, two processes
+
+    Stop it with Ctrl-C; the same command goes on where it was. best.yaml is a
+    whole parameter file: raised-hand replay -c tuning/best.yaml, or the node's.
+    """
+    from tracker.evaluation.scenario import SCENARIOS, default_config
+    from tracker.evaluation.tuning import tune
+    from tracker.evaluation.tuning_objective import find_objective
+    from tracker.evaluation.tuning_space import DEFAULT_KINDS, choose_parameters
+    from tracker.recording import Topics
+    from tracker.report.tuning_table import parameters_table, verdict_table, write_tuning
+
+    if source is None:
+        _list()
+        return
+    is_scenario = source in SCENARIOS
+    if not is_scenario and not Path(source).exists():
+        raise ConfigError(
+            f"{source}: is neither a scenario nor a recording that is there; `raised-hand tune` "
+            "alone lists the scenarios."
+        )
+    kinds = DEFAULT_KINDS if is_scenario else tuple(k for k in DEFAULT_KINDS if k != "life")
+    names = choose_parameters([word.strip() for word in params.split(",")] if params else kinds)
+    default = default_config(SCENARIOS[source]) if is_scenario else None
+    base = parameters_from(config, param, default)
+    _make_room(out)
+    if is_scenario:
+        objective = find_objective(source, seed=seed, parts=scenes, scene_s=scene_s, unseen=unseen)
+    else:
+        topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
+        objective = _recording(Path(source), base, topics)
+    address = storage or f"sqlite:///{(out / 'tuning.db').resolve()}"
+    try:
+        with processes(jobs, trials) as executor, trials_bar(errors, trials) as progress:
+            tuning = tune(
+                objective,
+                names,
+                base,
+                trials=trials,
+                storage=address,
+                seed=seed,
+                jobs=workers(jobs, trials),
+                executor=executor,
+                progress=progress,
+            )
+    except KeyboardInterrupt:
+        errors.print(f"\nThe trials are in {address}; the same command goes on.", soft_wrap=True)
+        raise
+    files = write_tuning(tuning, out)
+    if as_json:
+        from tracker.evaluation.tuning_result import tuning_as_dict
+
+        print_json(tuning_as_dict(tuning))
+        return
+    console.print(parameters_table(tuning))
+    console.print(verdict_table(tuning))
+    print_files(files)
+
+
+def _recording(source: Path, base: Config, topics: object) -> Objective:
+    from tracker.evaluation.tracker_steps import recorded_steps
+    from tracker.evaluation.tuning_objective import RecordingObjective
+
+    fetch_models_if_needed(errors)
+    with bar(errors, "Measuring") as progress:
+        steps = recorded_steps(source, base, topics=topics, progress=progress)  # type: ignore[arg-type]
+    return RecordingObjective(source.name, steps, base)
+
+
+def _list() -> None:
+    from rich.table import Table
+
+    from tracker.config import Config
+    from tracker.evaluation.scenario import SCENARIOS, PeopleScenario, ScanScenario
+    from tracker.evaluation.tuning_space import tunable
+
+    for name, item in SCENARIOS.items():
+        if isinstance(item, (PeopleScenario, ScanScenario)):
+            console.print(f"{name:<22}{item.title}", highlight=False, soft_wrap=True)
+    table = Table("parameter", "kind", "default", "search")
+    for name, search in tunable().items():
+        kind = Config.model_fields[name].annotation
+        where = ", ".join(getattr(kind, "__args__", ())) or f"{search.low:g} to {search.high:g}"
+        table.add_row(name, search.kind, str(getattr(Config(), name)), where)
+    console.print(table)
+
+
+def _make_room(out: Path) -> None:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RecordingError(f"{out}: cannot be made ({error.strerror}).") from error

@@ -1,0 +1,268 @@
+"""Which parameters serve a scenario or a recording best? A search that can be stopped and goes on.
+
+Optuna's tree-structured Parzen estimator proposes, every trial sees the same scenes, and what has
+been tried lies in Optuna's storage: several processes share it, and a later call goes on in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_EXCEPTION, Executor, wait
+from contextlib import suppress
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+
+from tracker.config import Config
+from tracker.errors import ConfigError
+from tracker.evaluation.tuning_objective import Objective
+from tracker.evaluation.tuning_result import Tuning
+from tracker.evaluation.tuning_space import suggest, within_search
+
+if TYPE_CHECKING:
+    from optuna import Study, Trial
+    from optuna.trial import FrozenTrial
+
+#: Told how many trials are done, and the best figure so far (NaN before there is one).
+Progress = Callable[[int, float], None]
+
+#: Trials drawn at random before the estimator begins, and before any is cut short.
+_BEGINNING = 10
+_POLL_S = 0.5
+
+
+def tune(
+    objective: Objective,
+    names: Sequence[str],
+    base: Config,
+    *,
+    trials: int,
+    storage: str,
+    seed: int = 1,
+    jobs: int = 1,
+    executor: Executor | None = None,
+    progress: Progress = lambda done, best: None,
+) -> Tuning:
+    """Search until the study holds so many trials, then judge the best on what no trial has seen.
+
+    The first trial is `base` itself. Run again with the same storage, it goes on where it was; so
+    it does after an interruption.
+
+    Args:
+        objective: What is better.
+        names: Parameters to search, from `choose_parameters`.
+        base: All other parameters, and what the best is held against.
+        trials: How many in all, earlier ones included.
+        storage: An Optuna storage, such as sqlite:///tuning.db.
+        seed: Of the search; one process gives the same trials again.
+        jobs: Shares into which the trials are cut for the executor.
+        executor: Who runs them, and the verdict; here and now where None.
+        progress: Told how far it is.
+
+    Raises:
+        ConfigError: Optuna is not there, the storage cannot be used or holds another search, or
+            the objective cannot judge a parameter.
+    """
+    if not names or trials < 1:
+        raise ConfigError(
+            f"{trials} trials of {len(names)} parameters were asked for; one of each is needed."
+        )
+    objective.check(names)
+    study = open_study(objective, names, base, storage)
+    done, _ = _standing(study)
+    study.set_user_attr("is_stopped", False)
+    if done == 0:
+        values = {name: getattr(base, name) for name in names}
+        study.enqueue_trial({k: v for k, v in values.items() if within_search(k, v)})
+    shares = [len(part) for part in np.array_split(np.arange(max(trials - done, 0)), jobs)]
+    work = [
+        (objective, tuple(names), base, storage, share, (seed, done, worker))
+        for worker, share in enumerate(shares)
+        if share
+    ]
+    if executor is None:
+        for item in work:
+            _search(*item, progress=progress)
+    else:
+        _share_out(executor, work, study, progress)
+    return _verdict(objective, names, base, study, executor)
+
+
+def open_study(objective: Objective, names: Sequence[str], base: Config, storage: str) -> Study:
+    """The study of a search: the one in the storage, or a new one.
+
+    Raises:
+        ConfigError: Optuna is not there, or the storage cannot be used or holds another search.
+    """
+    optuna = _optuna()
+    study = _load(optuna, storage, objective)
+    problem = {
+        "objective": objective.describe(),
+        "searched": list(names),
+        "base": base.model_dump(),
+    }
+    before = study.user_attrs.get("problem")
+    if before is None:
+        study.set_user_attr("problem", problem)
+    elif before != problem:
+        other = ", ".join(key for key in problem if before.get(key) != problem[key])
+        raise ConfigError(
+            f"{storage}: holds a search with another {other}, so that its figures do not compare; "
+            "give another --storage or --out, or the same words as then."
+        )
+    return study
+
+
+def _load(optuna: ModuleType, storage: str, objective: Objective) -> Study:
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        study: Study = optuna.create_study(
+            storage=storage,
+            study_name=objective.name,
+            direction="minimize" if objective.is_cost else "maximize",
+            load_if_exists=True,
+        )
+    except (optuna.exceptions.StorageInternalError, SQLAlchemyError, ImportError) as error:
+        raise ConfigError(
+            f"--storage {storage}: cannot be used ({type(error).__name__}); needed is an address "
+            "that Optuna knows, such as sqlite:///tuning.db."
+        ) from error
+    return study
+
+
+def _search(
+    objective: Objective,
+    names: tuple[str, ...],
+    base: Config,
+    storage: str,
+    trials: int,
+    seeds: tuple[int, ...],
+    progress: Progress = lambda done, best: None,
+) -> None:
+    """One process's share of the trials."""
+    optuna = _optuna()
+    study = _load(optuna, storage, objective)
+    with catch_warnings():
+        simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
+        study.sampler = optuna.samplers.TPESampler(
+            n_startup_trials=_BEGINNING,
+            multivariate=True,
+            constant_liar=True,
+            seed=int(np.random.SeedSequence(seeds).generate_state(1)[0]),
+        )
+    study.pruner = optuna.pruners.MedianPruner(n_startup_trials=_BEGINNING, n_warmup_steps=1)
+
+    def try_one(trial: Trial) -> float:
+        try:
+            config = base.replace(**suggest(trial, names))
+        except ConfigError as error:  # two parameters that contradict each other
+            raise optuna.TrialPruned(str(error)) from error
+        found: list[float] = []
+        for part, value in enumerate(objective.seen(config)):
+            found.append(value)
+            trial.report(float(np.mean(found)), part)
+            if part + 1 < objective.parts and trial.should_prune():
+                raise optuna.TrialPruned("worse than most from the first scenes on")
+        return float(np.mean(found))
+
+    def after(study: Study, trial: FrozenTrial) -> None:
+        progress(*_standing(study))
+        if study.user_attrs.get("is_stopped"):
+            study.stop()
+
+    study.optimize(try_one, n_trials=trials, callbacks=[after])
+
+
+def _share_out(
+    executor: Executor, work: list[tuple[Any, ...]], study: Study, progress: Progress
+) -> None:
+    futures = [executor.submit(_search_quietly, *item) for item in work]
+    try:
+        left = set(futures)
+        while left:
+            done, left = wait(left, _POLL_S, FIRST_EXCEPTION)
+            for future in done:
+                future.result()
+            progress(*_standing(study))
+    finally:
+        study.set_user_attr("is_stopped", True)  # whoever still searches ends with this trial
+
+
+def _search_quietly(*item: Any) -> None:
+    """In another process: Ctrl-C reaches all of them, and one has the word."""
+    with suppress(KeyboardInterrupt):
+        _search(*item)
+
+
+def _verdict(
+    objective: Objective,
+    names: Sequence[str],
+    base: Config,
+    study: Study,
+    executor: Executor | None,
+) -> Tuning:
+    complete = [trial for trial in study.trials if trial.state.name == "COMPLETE"]
+    if not complete:
+        raise ConfigError("No trial came to its end; more --trials are needed.")
+    chosen = study.best_trial
+    best = base.replace(**chosen.params)
+    run = map if executor is None else executor.map
+    return Tuning(
+        source=objective.name,
+        figure=objective.figure,
+        is_cost=objective.is_cost,
+        names=tuple(names),
+        base=base,
+        best=best,
+        best_trial=chosen.number,
+        trials=_standing(study)[0],
+        number=np.array([trial.number for trial in complete]),
+        value=np.array([trial.value for trial in complete], dtype=float),
+        tried={name: tuple(trial.params[name] for trial in complete) for name in names},
+        importance=_importance(study, names),
+        unseen_base=objective.unseen(base, run),
+        unseen_best=objective.unseen(best, run),
+    )
+
+
+def _importance(study: Study, names: Sequence[str]) -> dict[str, float]:
+    """Share of each parameter in what makes a trial good; nothing where too few were tried."""
+    optuna = _optuna()
+    evaluator_of = optuna.importance.PedAnovaImportanceEvaluator
+    with catch_warnings():
+        simplefilter("ignore")  # the evaluator is marked as experimental
+        try:
+            found = optuna.importance.get_param_importances(study, evaluator=evaluator_of())
+        except (RuntimeError, ValueError):
+            return {}
+    return {name: float(found[name]) for name in sorted(found, key=found.get, reverse=True)}
+
+
+def _standing(study: Study) -> tuple[int, float]:
+    """How many trials are done, and the best figure; NaN where there is none."""
+    ended = study.get_trials(deepcopy=False, states=_ended())
+    values = [float(trial.value) for trial in ended if trial.state.name == "COMPLETE"]
+    pick = min if study.direction.name == "MINIMIZE" else max
+    return len(ended), pick(values, default=float("nan"))
+
+
+def _ended() -> tuple[Any, ...]:
+    """States of trials that count: those that came to their end, and those cut short."""
+    states = _optuna().trial.TrialState
+    return states.COMPLETE, states.PRUNED
+
+
+def _optuna() -> ModuleType:
+    try:
+        optuna = import_module("optuna")
+    except ImportError as error:
+        raise ConfigError(
+            "Tuning needs Optuna, which is not installed; run "
+            "`pip install 'raised-hand-tracker[tune]'`."
+        ) from error
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    return optuna
