@@ -24,6 +24,7 @@ from tracker.errors import ConfigError, RecordingError
 
 if TYPE_CHECKING:
     from tracker.evaluation.tuning_objective import Objective
+    from tracker.recording import Topics
 
 _SCENES, _RECORDINGS = "Scenarios", "Recordings"
 
@@ -103,7 +104,7 @@ def tune_command(
     """
     from tracker.evaluation.scenario import SCENARIOS, default_config
     from tracker.evaluation.tuning import tune
-    from tracker.evaluation.tuning_objective import find_objective
+    from tracker.evaluation.tuning_objective import scenario_objective
     from tracker.evaluation.tuning_space import DEFAULT_KINDS, choose_parameters
     from tracker.recording import Topics
     from tracker.report.tuning_table import parameters_table, verdict_table, write_tuning
@@ -123,7 +124,9 @@ def tune_command(
     base = parameters_from(config, param, default)
     _make_room(out)
     if is_scenario:
-        objective = find_objective(source, seed=seed, parts=scenes, scene_s=scene_s, unseen=unseen)
+        objective = scenario_objective(
+            source, seed=seed, parts=scenes, scene_s=scene_s, unseen=unseen
+        )
     else:
         topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
         objective = _recording(Path(source), base, topics)
@@ -155,20 +158,19 @@ def tune_command(
     print_files(files)
 
 
-def _recording(source: Path, base: Config, topics: object) -> Objective:
+def _recording(source: Path, base: Config, topics: Topics) -> Objective:
     from tracker.evaluation.tracker_steps import recorded_steps
     from tracker.evaluation.tuning_objective import RecordingObjective
 
     fetch_models_if_needed(errors)
     with bar(errors, "Measuring") as progress:
-        steps = recorded_steps(source, base, topics=topics, progress=progress)  # type: ignore[arg-type]
+        steps = recorded_steps(source, base, topics=topics, progress=progress)
     return RecordingObjective(source.name, steps, base)
 
 
 def _list() -> None:
     from rich.table import Table
 
-    from tracker.config import Config
     from tracker.evaluation.scenario import SCENARIOS, PeopleScenario, ScanScenario
     from tracker.evaluation.tuning_space import tunable
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_EXCEPTION, Executor, wait
-from contextlib import suppress
 from importlib import import_module
+from signal import SIG_IGN, SIGINT, signal
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
@@ -71,12 +71,13 @@ def tune(
             f"{trials} trials of {len(names)} parameters were asked for; one of each is needed."
         )
     objective.check(names)
-    study = open_study(objective, names, base, storage)
+    study = _open(objective, names, base, storage)
     done, _ = _standing(study)
     study.set_user_attr("is_stopped", False)
     if done == 0:
         values = {name: getattr(base, name) for name in names}
-        study.enqueue_trial({k: v for k, v in values.items() if within_search(k, v)})
+        values = {name: value for name, value in values.items() if within_search(name, value)}
+        study.enqueue_trial(values, skip_if_exists=True)
     shares = [len(part) for part in np.array_split(np.arange(max(trials - done, 0)), jobs)]
     work = [
         (objective, tuple(names), base, storage, share, (seed, done, worker))
@@ -91,12 +92,8 @@ def tune(
     return _verdict(objective, names, base, study, executor)
 
 
-def open_study(objective: Objective, names: Sequence[str], base: Config, storage: str) -> Study:
-    """The study of a search: the one in the storage, or a new one.
-
-    Raises:
-        ConfigError: Optuna is not there, or the storage cannot be used or holds another search.
-    """
+def _open(objective: Objective, names: Sequence[str], base: Config, storage: str) -> Study:
+    """The study in the storage, or a new one."""
     optuna = _optuna()
     study = _load(optuna, storage, objective)
     problem = {
@@ -180,7 +177,7 @@ def _search(
 def _share_out(
     executor: Executor, work: list[tuple[Any, ...]], study: Study, progress: Progress
 ) -> None:
-    futures = [executor.submit(_search_quietly, *item) for item in work]
+    futures = [executor.submit(_search_on, *item) for item in work]
     try:
         left = set(futures)
         while left:
@@ -192,10 +189,10 @@ def _share_out(
         study.set_user_attr("is_stopped", True)  # whoever still searches ends with this trial
 
 
-def _search_quietly(*item: Any) -> None:
-    """In another process: Ctrl-C reaches all of them, and one has the word."""
-    with suppress(KeyboardInterrupt):
-        _search(*item)
+def _search_on(*item: Any) -> None:
+    """In another process: Ctrl-C is the first one's to answer; this one ends with its trial."""
+    signal(SIGINT, SIG_IGN)
+    _search(*item)
 
 
 def _verdict(
@@ -239,6 +236,8 @@ def _importance(study: Study, names: Sequence[str]) -> dict[str, float]:
             found = optuna.importance.get_param_importances(study, evaluator=evaluator_of())
         except (RuntimeError, ValueError):
             return {}
+    if not np.isfinite(list(found.values())).all():  # all trials alike
+        return {}
     return {name: float(found[name]) for name in sorted(found, key=found.get, reverse=True)}
 
 
@@ -264,5 +263,5 @@ def _optuna() -> ModuleType:
             "Tuning needs Optuna, which is not installed; run "
             "`pip install 'raised-hand-tracker[tune]'`."
         ) from error
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna

@@ -194,7 +194,9 @@ class RecordingObjective:
         return np.bincount(piece, score.log_densities[counts]) / np.bincount(piece)
 
 
-def find_objective(name: str, *, seed: int, parts: int, scene_s: float, unseen: int) -> Objective:
+def scenario_objective(
+    name: str, *, seed: int, parts: int, scene_s: float, unseen: int
+) -> Objective:
     """The objective of a scenario.
 
     Raises:

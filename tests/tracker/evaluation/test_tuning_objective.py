@@ -10,7 +10,7 @@ from tracker.evaluation.tuning_objective import (
     FIRST_UNSEEN,
     RecordingObjective,
     ScenarioObjective,
-    find_objective,
+    scenario_objective,
 )
 from tracker.evaluation.tuning_space import tunable
 
@@ -97,6 +97,6 @@ def test_a_recording_without_enough_in_it_is_refused():
 
 def test_scenarios_without_a_whole_tracker_are_refused():
     with pytest.raises(ConfigError, match="model-matched has no tracks that come and go"):
-        find_objective("model-matched", seed=1, parts=1, scene_s=1.0, unseen=2)
+        scenario_objective("model-matched", seed=1, parts=1, scene_s=1.0, unseen=2)
     with pytest.raises(SceneError, match="moonbase"):
-        find_objective("moonbase", seed=1, parts=1, scene_s=1.0, unseen=2)
+        scenario_objective("moonbase", seed=1, parts=1, scene_s=1.0, unseen=2)
