@@ -127,7 +127,7 @@ class RecordingObjective:
     piece_s: float = 5.0
     seen_share: float = 0.6
 
-    figure: ClassVar[str] = "mean log-density of a measurement (1/m^2)"
+    figure: ClassVar[str] = "log-density of measurements (1/m^2)"
     is_cost: ClassVar[bool] = False
     parts: ClassVar[int] = 1
 

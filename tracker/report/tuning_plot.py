@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from tracker.config import parameter_extra, parameter_search
 from tracker.evaluation.tuning_result import Tuning
@@ -59,6 +60,7 @@ def _draw_history(axes: Axes, tuning: Tuning) -> None:
         ylabel=tuning.figure,
         ylim=_limits(tuning),
     )
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.legend(frameon=False)
     _plain(axes)
 
@@ -92,7 +94,6 @@ def _draw_slice(axes: Axes, tuning: Tuning, name: str) -> None:
     search, unit = parameter_search(name), parameter_extra(name)["unit"]
     tried = tuning.tried[name]
     axes.plot(tried, tuning.value, ".", color=FADED, markersize=4)
-    # Words first come, first placed: the marks take the places that the trials have made.
     marks = [(getattr(tuning.base, name), INK, "|"), (getattr(tuning.best, name), LIT, "D")]
     low, high = _limits(tuning)
     for value, color, marker in marks:
@@ -100,6 +101,9 @@ def _draw_slice(axes: Axes, tuning: Tuning, name: str) -> None:
                   markeredgecolor=INK, clip_on=False)  # fmt: skip
     if search is not None and search.log:
         axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
     share = tuning.importance.get(name)
     words = "" if share is None else f"  {share:.0%}"
     axes.set_title(f"{name}{words}", fontsize=8, color=INK)
