@@ -18,7 +18,7 @@ setup(
     python_requires=">=3.10",
     packages=[*find_packages(include=["tracker*", "nodes*"]), "tracker.scenes"],
     package_dir={"tracker.scenes": "config/scenes"},
-    package_data={"tracker": ["py.typed"], "tracker.scenes": ["*.yaml"]},
+    package_data={"tracker": ["py.typed", "report/page.html"], "tracker.scenes": ["*.yaml"]},
     extras_require={
         "test": [
             "pytest>=8,<10",

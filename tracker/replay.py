@@ -6,7 +6,8 @@ Reads any recording, writes `output.mcap`, `tracks.csv`, `summary.json`, `overvi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,6 +31,9 @@ from tracker.transforms import StampedTransform
 #: Told what share of the recording is done, from 0 to 1, and how many images were processed.
 Progress = Callable[[float, int], None]
 
+#: Told each processed image, what it led to, and the seconds of the wall's clock that took.
+Watcher = Callable[[CameraImage, FrameResult, float], None]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Replay:
@@ -40,6 +44,7 @@ class Replay:
         summary: The content of `summary.json`.
         episodes: Reported against true raised hands; None where the recording holds no truth.
         problems: What was wrong with the input, one line each; empty where nothing was.
+        remarks: What is worth saying and is no fault, one line each.
         files: What was written.
     """
 
@@ -47,6 +52,7 @@ class Replay:
     summary: dict[str, object]
     episodes: EpisodeReport | None
     problems: tuple[str, ...]
+    remarks: tuple[str, ...]
     files: tuple[Path, ...]
 
 
@@ -60,6 +66,7 @@ def replay(
     detector: HandDetector | None = None,
     progress: Progress | None = None,
     watch: Watch | None = None,
+    watchers: Sequence[Watcher] = (),
 ) -> Replay:
     """Run a recording through the pipeline and write everything that comes of it.
 
@@ -75,6 +82,7 @@ def replay(
         detector: Finds hands; by default MediaPipe's models.
         progress: Told how far it is.
         watch: Passed on to the tracker, as an `innovation_log.InnovationLog`.
+        watchers: Told of each image, as a live view or a report.
 
     Raises:
         RecordingError: The source cannot be opened or holds neither images nor scans, or the
@@ -94,11 +102,17 @@ def replay(
         pipeline = Pipeline(config, detector, watch=watch)
         with ReplayOutputs(out, config) as outputs:
 
-            def take(image: CameraImage, result: FrameResult) -> None:
-                outputs.write(image, result)
-                history.write(result)
-                evaluation.add_result(result)
-                problems.note_frame(result)
+            def advance(now_ns: int | None = None) -> None:
+                began_s = time.perf_counter()
+                for image, result in pipeline.advance(now_ns):
+                    busy_s = time.perf_counter() - began_s
+                    outputs.write(image, result)
+                    history.write(result)
+                    evaluation.add_result(result)
+                    problems.note_frame(result)
+                    for watch in watchers:
+                        watch(image, result, busy_s)
+                    began_s = time.perf_counter()
 
             try:
                 for log_ns, event in recording.events():
@@ -110,14 +124,12 @@ def replay(
                     outputs.copy(log_ns, event)
                     now_ns = _feed(pipeline, event, problems)
                     if now_ns is not None:
-                        for image, result in pipeline.advance(now_ns):
-                            take(image, result)
+                        advance(now_ns)
                     if progress is not None and isinstance(event, (CameraImage, Scan)):
                         progress(recording.share(log_ns), history.frames_processed)
             except RecordingError as error:  # breaks off: what came before it counts
                 problems.add("broken recording", str(error))
-            for image, result in pipeline.advance():
-                take(image, result)
+            advance()
         _note_missing(pipeline, recording, history, problems, config)
         for reason in recording.skipped_lines():
             problems.add("skipped", reason)
@@ -133,7 +145,7 @@ def replay(
     if progress is not None:
         progress(1.0, history.frames_processed)
     files = (*outputs.files, out / "summary.json", out / "overview.png")
-    return Replay(history, summary, episodes, problems.lines(), files)
+    return Replay(history, summary, episodes, problems.lines(), remarks, files)
 
 
 def _feed(pipeline: Pipeline, event: object, problems: Problems) -> int | None:

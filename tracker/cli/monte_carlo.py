@@ -15,6 +15,9 @@ from tracker.cli.options import (
     ConfigOption,
     JsonOption,
     ParameterOption,
+    ReportOption,
+    check_is_no_folder,
+    command_line,
     console,
     errors,
     parameters_from,
@@ -60,6 +63,7 @@ def monte_carlo_command(
     format: Annotated[
         TableFormat, typer.Option(help="parquet: trials.parquet as well, once all are there.")
     ] = TableFormat.CSV,
+    report: ReportOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Run many noisy trials, and hold the tracker against the truth and against what is possible.
@@ -72,12 +76,14 @@ def monte_carlo_command(
     from tracker.evaluation.monte_carlo import find_scenario, monte_carlo, worthwhile_workers
     from tracker.evaluation.scenario import SCENARIOS, PeopleScenario, default_config
     from tracker.evaluation.study import study_as_dict
+    from tracker.report.study_page import study_page
     from tracker.report.study_table import study_table, write_parquet, write_study
 
     if scenario is None:
         for name, item in SCENARIOS.items():
             console.print(f"{name:<22}{item.title}", highlight=False, soft_wrap=True)
         return
+    check_is_no_folder("--report", report)
     _, chosen = find_scenario(scenario)
     if paths is not None:
         if not isinstance(chosen, PeopleScenario):
@@ -111,6 +117,8 @@ def monte_carlo_command(
         files = (out / "trials.csv", *write_study(study, out))
     if out is not None and format is TableFormat.PARQUET:
         files = (*files, write_parquet(study, out))
+    if report is not None:
+        files = (*files, study_page(study, command=command_line()).write(report))
     if as_json:
         print_json(study_as_dict(study))
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from pathlib import Path
 from typing import Annotated, Any
@@ -23,6 +24,10 @@ ConfigOption = Annotated[
 ParameterOption = Annotated[
     list[str] | None,
     typer.Option("--param", "-p", help="One parameter, as in -p ranging:=spec; may be repeated."),
+]
+ReportOption = Annotated[
+    Path | None,
+    typer.Option(help="A page with plots and tables: one .html file that needs nothing else."),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 
@@ -50,6 +55,21 @@ def parameters_from(
             raise ConfigError(f"--param is {assignment!r}; needed is NAME:=VALUE.")
         changes[name] = yaml.safe_load(text)
     return chosen.replace(**changes) if changes else chosen
+
+
+def command_line() -> str:
+    """What the user typed, fit to be typed again."""
+    return shlex.join(["raised-hand", *sys.argv[1:]])
+
+
+def check_is_no_folder(option: str, path: Path | None) -> None:
+    """Refuse a folder where a file is to be written, before the work and not after it.
+
+    Raises:
+        ConfigError: It is a folder.
+    """
+    if path is not None and path.is_dir():
+        raise ConfigError(f"{option} is {path}, a folder; needed is the name of a file.")
 
 
 def print_json(document: Any) -> None:

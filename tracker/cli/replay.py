@@ -12,6 +12,9 @@ from tracker.cli.options import (
     ConfigOption,
     JsonOption,
     ParameterOption,
+    ReportOption,
+    check_is_no_folder,
+    command_line,
     complain,
     console,
     errors,
@@ -41,6 +44,7 @@ def replay_command(
         str,
         typer.Option(help="Which time counts: `header` (the sensor's) or `log` (the recorder's)."),
     ] = "header",
+    report: ReportOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Run a recording through the tracker, as the robot would have seen it.
@@ -49,7 +53,8 @@ def replay_command(
     and debug.mp4. A recording that breaks off is replayed as far as it goes, and the status is 1.
     """
     from tracker.recording import Topics
-    from tracker.replay import replay
+    from tracker.replay import Watcher, replay
+    from tracker.report.replay_page import ReplayReport
     from tracker.report.summary import summary_table
 
     if stamps not in ("header", "log"):
@@ -57,18 +62,41 @@ def replay_command(
     parameters = parameters_from(config, param)
     if not source.exists():
         raise ConfigError(f"{source}: there is no such file or folder.")
+    check_is_no_folder("--report", report)
     fetch_models_if_needed(errors)
+    watched = ReplayReport(parameters) if report is not None else None
+    watchers: list[Watcher] = [watched.watch] if watched is not None else []
     topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
     with bar(errors, "Replaying") as progress:
-        result = replay(source, out, parameters, topics=topics, stamps=stamps, progress=progress)
+        result = replay(
+            source,
+            out,
+            parameters,
+            topics=topics,
+            stamps=stamps,
+            progress=progress,
+            watchers=watchers,
+        )
+    files = result.files
+    if report is not None and watched is not None:
+        page = watched.page(
+            str(source),
+            result.history,
+            result.episodes,
+            overview=out / "overview.png",
+            problems=result.problems,
+            remarks=result.remarks,
+            command=command_line(),
+        )
+        files = (*files, page.write(report))
     if as_json:
         print_json(result.summary)
     else:
         table = summary_table(result.history)
         images = f"{result.history.frames_processed} images"
         console.print(table if table.row_count else f"Nobody raised a hand in {images}.")
-        print_files(result.files)
-    for remark in result.summary["remarks"]:  # type: ignore[attr-defined]
+        print_files(files)
+    for remark in result.remarks:
         errors.print(f"note: {remark}", highlight=False, markup=False, soft_wrap=True)
     for problem in result.problems:
         complain(problem)

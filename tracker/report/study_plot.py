@@ -40,18 +40,19 @@ def draw_study(study: Study, path: str | Path) -> None:
     """
     figure = Figure(figsize=(10.0, 4.4), dpi=160, facecolor=PAPER, layout="constrained")
     if isinstance(study, FilterStudy):
-        _draw_filter(figure, study)
+        error, nees = figure.subplots(1, 2)
+        draw_filter(error, nees, study)
     elif isinstance(study, KnownPeopleStudy):
         for axes, (name, title) in zip(figure.subplots(1, 4), _KNOWN_PEOPLE, strict=True):
-            _draw_distribution(axes, study.rows[name], title)
+            draw_distribution(axes, study.rows[name], title)
     else:
         _draw_people(figure, study)
     figure.suptitle(f"{study.name}: {study.trials} trials of seed {study.seed}", color=INK)
     figure.savefig(path, format="png")
 
 
-def _draw_filter(figure: Figure, study: FilterStudy) -> None:
-    error, nees = figure.subplots(1, 2)
+def draw_filter(error: Axes, nees: Axes, study: FilterStudy) -> None:
+    """Draw a filter's error beside its bound, and its NEES beside its ideal, over time."""
     at_s = (1 + np.arange(len(study.nees))) / study.scenario.rate_hz
     error.plot(at_s, np.sqrt(study.squared_error_m2), color=PERSON_COLORS[0], label="RMSE")
     error.plot(at_s, np.sqrt(study.bound_m2), "--", color=INK, label="Cramer-Rao bound")
@@ -69,22 +70,33 @@ def _draw_filter(figure: Figure, study: FilterStudy) -> None:
 
 def _draw_people(figure: Figure, study: PeopleStudy) -> None:
     grid = figure.add_gridspec(2, 4)
-    parts = figure.add_subplot(grid[:, :2])
+    draw_gospa_parts(figure.add_subplot(grid[:, :2]), study)
+    for place, (name, title) in enumerate(_DISTRIBUTIONS):
+        axes = figure.add_subplot(grid[place // 2, 2 + place % 2])
+        draw_distribution(axes, study.rows[name], title)
+
+
+def draw_gospa_parts(axes: Axes, study: PeopleStudy) -> None:
+    """Draw each trial's GOSPA by its parts, the best trial first."""
     order = np.argsort(study.rows["gospa_m"])
     below = np.zeros(study.trials)
     for part, color in zip(_GOSPA_PARTS, PERSON_COLORS, strict=False):
         values = study.rows[f"gospa_{part}"][order]
-        parts.bar(np.arange(study.trials), values, 1.0, below, color=color, label=part)
+        axes.bar(np.arange(study.trials), values, 1.0, below, color=color, label=part)
         below += values
-    parts.set(xlabel="trials, best first", ylabel="GOSPA squared, by parts (m$^2$)")
-    parts.legend(frameon=False)
-    _plain(parts)
-    for place, (name, title) in enumerate(_DISTRIBUTIONS):
-        axes = figure.add_subplot(grid[place // 2, 2 + place % 2])
-        _draw_distribution(axes, study.rows[name], title)
+    axes.set(xlabel="trials, best first", ylabel="GOSPA squared, by parts (m$^2$)")
+    axes.legend(frameon=False)
+    _plain(axes)
 
 
-def _draw_distribution(axes: Axes, values: FloatArray, title: str) -> None:
+def draw_distribution(axes: Axes, values: FloatArray, title: str) -> None:
+    """Draw how often each value came, and their mean as a line.
+
+    Args:
+        axes: Where to draw.
+        values: Shape (B,), one of each trial; NaN where nothing was measured.
+        title: What they are, with the unit.
+    """
     values = values[np.isfinite(values)]
     if len(values):
         axes.hist(values, bins=min(20, max(5, len(values) // 4)), color=PERSON_COLORS[0])

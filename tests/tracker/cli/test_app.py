@@ -229,3 +229,22 @@ def test_evaluate_judges_photos(run, tmp_path):
     assert got == 0
     assert "0 of 1" in output
     assert (tmp_path / "out" / "photos.csv").read_text().splitlines()[1] == "gray.png,0,0,0"
+
+
+def test_a_study_has_a_page_that_tells_its_command(run, tmp_path):
+    words = ("monte-carlo", "known-people", "-n", "3", "-j", "1", "--report", "new/page.html")
+    status, output, _ = run(*words)
+    assert status == 0
+    assert "wrote new/page.html" in output
+    page = (tmp_path / "new/page.html").read_text(encoding="utf-8")
+    assert "raised-hand monte-carlo known-people -n 3 -j 1 --report new/page.html" in page
+
+
+@pytest.mark.parametrize("command", ["replay", "monte-carlo"])
+def test_a_page_cannot_take_the_place_of_a_folder(run, tmp_path, command):
+    (tmp_path / "bag.mcap").touch()
+    (tmp_path / "page").mkdir()
+    what = "bag.mcap" if command == "replay" else "people"
+    status, _, error = run(command, what, "--report", "page")
+    assert status == 2
+    assert "--report is page, a folder" in complaint(error)
