@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -45,6 +46,12 @@ def replay_command(
         typer.Option(help="Which time counts: `header` (the sensor's) or `log` (the recorder's)."),
     ] = "header",
     report: ReportOption = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Watch live in Rerun's viewer (extra `view`).")
+    ] = False,
+    save_view: Annotated[
+        Path | None, typer.Option(help="A recording for Rerun's viewer: an .rrd file.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Run a recording through the tracker, as the robot would have seen it.
@@ -55,6 +62,7 @@ def replay_command(
     from tracker.recording import Topics
     from tracker.replay import Watcher, replay
     from tracker.report.replay_page import ReplayReport
+    from tracker.report.rerun_view import RerunView
     from tracker.report.summary import summary_table
 
     if stamps not in ("header", "log"):
@@ -63,11 +71,16 @@ def replay_command(
     if not source.exists():
         raise ConfigError(f"{source}: there is no such file or folder.")
     check_is_no_folder("--report", report)
+    check_is_no_folder("--save-view", save_view)
     fetch_models_if_needed(errors)
     watched = ReplayReport(parameters) if report is not None else None
     watchers: list[Watcher] = [watched.watch] if watched is not None else []
     topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
-    with bar(errors, "Replaying") as progress:
+    with ExitStack() as stack:
+        if view or save_view is not None:
+            viewer = stack.enter_context(RerunView(live=view, save=save_view))
+            watchers.append(viewer.watch)
+        progress = stack.enter_context(bar(errors, "Replaying"))
         result = replay(
             source,
             out,
@@ -77,7 +90,7 @@ def replay_command(
             progress=progress,
             watchers=watchers,
         )
-    files = result.files
+    files = (*result.files, *([save_view] if save_view is not None else []))
     if report is not None and watched is not None:
         page = watched.page(
             str(source),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -26,7 +28,9 @@ def study_page(study: Study, *, command: str = "") -> Page:
     """
     sections = (
         Section("In short", (Text((study.scenario.title,)), _headlines(study))),
-        Section("Figures", (Table.from_rich(study_table(study)), *_verdict(study))),
+        Section(
+            "Figures", (replace(Table.from_rich(study_table(study)), title=""), *_verdict(study))
+        ),
         Section("Plots", _plots(study)),
         Section("Spread over the trials", (*_histograms(study), _quantiles(study))),
         Section("Worst trials", _worst(study)),

@@ -248,3 +248,44 @@ def test_a_page_cannot_take_the_place_of_a_folder(run, tmp_path, command):
     status, _, error = run(command, what, "--report", "page")
     assert status == 2
     assert "--report is page, a folder" in complaint(error)
+
+
+@pytest.fixture
+def blank_recording(tmp_path):
+    """Three images of nothing, in the current folder."""
+    with RecordingWriter(tmp_path / "in.mcap") as writer:
+        for number in range(3):
+            stamp_ns = 10**9 + number * 10**8
+            picture = np.zeros((48, 64, 3), np.uint8)
+            writer.write("/image_raw", stamp_ns, CameraImage(stamp_ns, "camera_link", picture))
+    return "in.mcap"
+
+
+@pytest.mark.model
+def test_a_replay_has_a_page_that_tells_problems_and_command(
+    run, tmp_path, model_store, blank_recording
+):
+    run("replay", blank_recording, "--report", "page.html", "-p", "processing_rate:=9.0")
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "no transform from" in page
+    assert "raised-hand replay in.mcap --report page.html -p processing_rate:=9.0" in page
+    assert "<td>processing_rate</td>" in page
+
+
+@pytest.mark.model
+def test_a_replay_leaves_a_recording_for_the_viewer(run, tmp_path, model_store, blank_recording):
+    pytest.importorskip("rerun", reason="the extra `view` is not installed")
+    _, output, _ = run("replay", blank_recording, "--save-view", "view.rrd")
+    assert "wrote view.rrd" in output
+    assert (tmp_path / "view.rrd").stat().st_size > 1000
+
+
+@pytest.mark.model
+@pytest.mark.parametrize("option", [("--view",), ("--save-view", "view.rrd")])
+def test_a_view_without_rerun_is_one_line_and_status_2(
+    run, monkeypatch, model_store, blank_recording, option
+):
+    monkeypatch.setitem(sys.modules, "rerun", None)
+    status, _, error = run("replay", blank_recording, *option)
+    assert status == 2
+    assert "pip install 'raised-hand-tracker[view]'" in complaint(error)
