@@ -21,7 +21,7 @@ setup(
     package_data={"tracker": ["py.typed", "report/page.html"], "tracker.scenes": ["*.yaml"]},
     extras_require={
         "test": [
-            "pytest>=8,<10",
+            "pytest>=8.2,<10",
             "pytest-xdist>=3.5,<4",
             "hypothesis>=6.100,<7",
             "filterpy>=1.4.5,<3",

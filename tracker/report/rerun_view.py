@@ -66,7 +66,9 @@ class RerunView:
             sinks.append(rerun.GrpcSink())
         self._stream.set_sinks(*sinks, default_blueprint=_blueprint())
         self._stream.log("map", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-        line = rerun.SeriesLines(colors=_rgba(LIT), names="hand_raised", widths=3)
+        line = rerun.SeriesLines(
+            colors=_rgba(LIT), names="hand_raised", widths=3, interpolation_mode="StepAfter"
+        )
         self._stream.log("hand_raised", line, static=True)
         self._last_xy_m: dict[int, FloatArray] = {}
         self._known: set[int] = set()
@@ -144,7 +146,7 @@ class RerunView:
         people = rerun.Points3D(
             places,
             colors=colors,
-            radii=[0.1 if is_up else 0.05 for is_up in tracks.raised],
+            radii=[0.06 if is_up else 0.03 for is_up in tracks.raised],
             labels=[_label(tracks, row) for row in range(len(tracks))],
             show_labels=True,
         )

@@ -65,4 +65,5 @@ class StageTimes:
         summed = np.cumsum(self._counts[stage])
         if summed[-1] == 0:
             return float("nan")
-        return float(_BIN_EDGES_S[np.searchsorted(summed, share * summed[-1])])
+        edge_s = _BIN_EDGES_S[np.searchsorted(summed, share * summed[-1])]
+        return float(min(edge_s, self._longest_s[stage]))

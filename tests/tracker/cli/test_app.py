@@ -274,7 +274,7 @@ def test_a_replay_has_a_page_that_tells_problems_and_command(
 
 @pytest.mark.model
 def test_a_replay_leaves_a_recording_for_the_viewer(run, tmp_path, model_store, blank_recording):
-    pytest.importorskip("rerun", reason="the extra `view` is not installed")
+    pytest.importorskip("rerun", reason="the extra `view` is absent", exc_type=ImportError)
     _, output, _ = run("replay", blank_recording, "--save-view", "view.rrd")
     assert "wrote view.rrd" in output
     assert (tmp_path / "view.rrd").stat().st_size > 1000

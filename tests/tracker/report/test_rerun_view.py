@@ -11,7 +11,7 @@ from tracker.report.rerun_view import RerunView
 @pytest.fixture
 def rerun():
     """Rerun, strict: what it cannot show is an error."""
-    rerun = pytest.importorskip("rerun", reason="the extra `view` is not installed")
+    rerun = pytest.importorskip("rerun", reason="the extra `view` is absent", exc_type=ImportError)
     before = rerun.strict_mode()
     rerun.set_strict_mode(True)
     yield rerun
