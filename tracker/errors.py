@@ -10,6 +10,7 @@
         RecordingError     a recording, video or folder that cannot be read or written
         SceneError         a simulation scene that makes no sense (also a ValueError)
         WorkerError        processes or a cluster that die or cannot be reached
+        CalibrationError   data that do not determine what was asked for (also a ValueError)
 
 Every message says what came, what was needed and what to do. The command line prints the message
 alone and leaves with status 1, or 2 where the user's own words (file names, parameters) are off.
@@ -54,3 +55,7 @@ class SceneError(TrackerError, ValueError):
 
 class WorkerError(TrackerError):
     """The processes or the cluster that do the work died, or cannot be reached."""
+
+
+class CalibrationError(TrackerError, ValueError):
+    """The data do not determine what should be found from them."""

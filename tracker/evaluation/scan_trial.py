@@ -58,6 +58,30 @@ def play_scan_trial(
         hand_up_s=scenario.hand_up_s,
         hand_down_s=scenario.hand_down_s,
     )
+    yield from play_scene(scenario, scene, config, rng)
+
+
+def play_scene(
+    scenario: ScanScenario,
+    scene: Scene,
+    config: Config,
+    rng: np.random.Generator,
+    believed: Scene | None = None,
+) -> Iterator[tuple[Truth, FrameResult]]:
+    """Play a scene of one's own, whose robot stands still.
+
+    Args:
+        scenario: Its rate, duration, and the noise of hands.
+        scene: What happens.
+        config: The pipeline's parameters.
+        rng: All randomness.
+        believed: Whose mountings of camera and laser the transforms tell; the scene's own where
+            None.
+
+    Yields:
+        What is true and what the pipeline makes of it, frame by frame.
+    """
+    believed = scene if believed is None else believed
     camera = scene.camera
     view = Viewpoint.of(camera, map_from_camera(scene, 0.0))
     detector = _ShownHands(scenario, scene, view, rng)
@@ -65,8 +89,8 @@ def play_scan_trial(
     pipeline.set_camera(CameraModel(camera.fx, camera.fy, camera.cx, camera.cy))
     start_ns = scene.start_s * 1_000_000_000
     for frame, pose in [
-        (camera.frame, map_from_camera(scene, 0.0)),
-        (scene.laser.frame, map_from_laser(scene, 0.0)),
+        (camera.frame, map_from_camera(believed, 0.0)),
+        (scene.laser.frame, map_from_laser(believed, 0.0)),
     ]:
         pipeline.add_transform(
             StampedTransform(start_ns, config.fixed_frame, frame, pose, is_static=True)

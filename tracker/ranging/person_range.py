@@ -63,30 +63,43 @@ def owners(
     heading = rays.bearing_rad + rays.origin[2]
     along, across = ray_coordinates(people.xy_m, rays.origin[:2], heading)
     beside = (along > 0.0) & (np.abs(across) <= arm_reach_m)
-    offset, range_m = _owner_offset(hands), _range_from_size(hands, camera)
+    offset = _BESIDE_M * owner_side(hands)
     beside_m = np.where(hands.is_owned, _TORSO_STD_M, _BESIDE_STD_M)[:, None]
-    misfit = ((across - offset[:, None]) / beside_m) ** 2
-    palm_px = _palm_px(hands)[:, None]
-    spread = np.hypot(_RANGE_SPREAD, _LANDMARK_STD_PX / palm_px)
-    of_size = (np.log(np.maximum(along, 0.05) / range_m[:, None]) / spread) ** 2
-    misfit += np.where(palm_px >= _PALM_MIN_PX, of_size, 0.0)
+    misfit = ((across - offset[:, None]) / beside_m) ** 2 + size_misfit(hands, camera, along)
     beside &= misfit <= _MISFIT_MAX
     misfit += _BACKGROUND_MISFIT * is_background
     best = np.argmin(np.where(beside, misfit, np.inf), axis=1)
     return np.where(beside.any(axis=1), best, -1)
 
 
-def _owner_offset(hands: Hands) -> FloatArray:
-    """How far to the left of the hand its owner should stand, shape (H,), meters.
+def owner_side(hands: Hands) -> FloatArray:
+    """On which side of the hand its owner should stand, shape (H,), from 1 (left) to -1 (right).
 
     Whether it is a left or a right hand, seen from the front or from behind: held up beside the
     head, its thumb is on the head's side. A hand seen edge-on tells nothing. Where the ray is the
     torso's, the owner stands on it.
     """
-    palm = _palm_px(hands)
     toward = hands.landmarks_px[:, _THUMB_TIP, 0] - hands.landmarks_px[:, _PINKY_ROOT, 0]
-    beside = -_BESIDE_M * np.clip(toward / palm, -1.0, 1.0)
-    return np.asarray(np.where(hands.is_owned, 0.0, beside))
+    side = -np.clip(toward / _palm_px(hands), -1.0, 1.0)
+    return np.asarray(np.where(hands.is_owned, 0.0, side))
+
+
+def size_misfit(hands: Hands, camera: CameraModel, along_m: FloatArray) -> FloatArray:
+    """How badly the size of hands fits distances, in squared standard deviations.
+
+    Args:
+        hands: In the picture.
+        camera: Intrinsics of the full image.
+        along_m: Shape (H, C): distances that each hand is held against.
+
+    Returns:
+        Shape (H, C); 0 where the palm is too short to tell.
+    """
+    palm_px = _palm_px(hands)[:, None]
+    range_m = _range_from_size(hands, camera)[:, None]
+    spread = np.hypot(_RANGE_SPREAD, _LANDMARK_STD_PX / palm_px)
+    of_size = (np.log(np.maximum(along_m, 0.05) / range_m) / spread) ** 2
+    return np.asarray(np.where(palm_px >= _PALM_MIN_PX, of_size, 0.0))
 
 
 def _range_from_size(hands: Hands, camera: CameraModel) -> FloatArray:
