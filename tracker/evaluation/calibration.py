@@ -142,7 +142,7 @@ def _best_rows(sightings: Sightings, state: FloatArray) -> IntArray:
     misfit = (_errors(sightings, state) / sightings.std_rad) ** 2 + sightings.size_misfit
     order = np.lexsort((misfit, sightings.hand))
     first = np.diff(sightings.hand[order], prepend=-1) != 0
-    return order[first]
+    return np.asarray(order[first])
 
 
 def _fit(sightings: Sightings, state: FloatArray, free: IntArray) -> FloatArray:
@@ -151,22 +151,22 @@ def _fit(sightings: Sightings, state: FloatArray, free: IntArray) -> FloatArray:
         moved[free] = values
         return np.asarray(_errors(sightings, moved) / sightings.std_rad)
 
-    result = state.copy()
+    result = np.array(state)
     found = least_squares(normalized, state[free], loss="huber", f_scale=_HUBER)
     result[free] = found.x
-    return result
+    return np.asarray(result)
 
 
 def _covariance(sightings: Sightings, state: FloatArray, free: IntArray) -> FloatArray:
-    """Of the free numbers, as if all errors were independent: s^2 E[psi^2] / E[psi']^2 inv(J'J)."""
+    """Of the free numbers, for independent errors: E[psi^2] / E[psi']^2 inv(J'J)."""
     error = _errors(sightings, state) / sightings.std_rad
     pulled = np.clip(error, -_HUBER, _HUBER)
-    inside = np.mean(np.abs(error) < _HUBER)
+    inside = max(float(np.mean(np.abs(error) < _HUBER)), 0.05)
     step = 1e-6
     shifted = [_errors(sightings, state + step * np.eye(4)[number]) for number in free]
     slope = normalize_angle(np.stack(shifted, axis=-1) - _errors(sightings, state)[:, None]) / step
     slope = slope / sightings.std_rad[:, None]
-    spread = (pulled @ pulled) / max(len(error) - len(free), 1) / max(inside, 0.05) ** 2
+    spread = (pulled @ pulled) / max(len(error) - len(free), 1) / inside**2
     return np.asarray(spread * np.linalg.pinv(slope.T @ slope, rcond=1e-12, hermitian=True))
 
 

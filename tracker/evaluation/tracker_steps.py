@@ -12,16 +12,14 @@ from pathlib import Path
 
 from numpy.typing import ArrayLike
 
-from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import CameraImage, Measurements, Scan, Tracks
-from tracker.errors import RecordingError, TransformError
+from tracker.containers import Measurements, Tracks
+from tracker.evaluation.recorded_frames import recorded_frames
 from tracker.perception.detector import HandDetector
 from tracker.pipeline import Pipeline
-from tracker.recording import Topics, open_recording
+from tracker.recording import Topics
 from tracker.tracking import PersonTracker, View
 from tracker.tracking.innovations import Watch
-from tracker.transforms import StampedTransform
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,22 +69,10 @@ def recorded_steps(
         ModelFileError: The hand models are not there.
     """
     config = config or Config()
-    with open_recording(source, topics or Topics(), stamps=stamps) as recording:
-        recording.require_images()
-        pipeline = Pipeline(config, detector)
-        pipeline.tracker = steps = _Steps(config)
-        try:
-            for log_ns, event in recording.events():
-                _feed(pipeline, event)
-                progress(recording.share(log_ns), len(steps.taken))
-        except RecordingError:
-            if not steps.taken:
-                raise
-        for _ in pipeline.advance():
-            pass
-    progress(1.0, len(steps.taken))
-    if not steps.taken:
-        raise RecordingError(f"{source}: holds no image that could be processed.")
+    pipeline = Pipeline(config, detector)
+    pipeline.tracker = steps = _Steps(config)
+    for _ in recorded_frames(source, pipeline, topics=topics, stamps=stamps, progress=progress):
+        pass
     return tuple(steps.taken)
 
 
@@ -133,24 +119,3 @@ class _Steps(PersonTracker):
         self.taken.append(step)
         self._is_anew = False
         return super().step(stamp_ns, measurements, robot_xy_m, view=view, scan_view=scan_view)
-
-
-def _feed(pipeline: Pipeline, event: object) -> None:
-    """Push one event into the pipeline, and let it work."""
-    if isinstance(event, CameraModel):
-        pipeline.set_camera(event)
-    elif isinstance(event, StampedTransform):
-        try:
-            pipeline.add_transform(event)
-        except TransformError:
-            return  # an unusable transform is none; `replay` is where problems are told
-    elif isinstance(event, Scan):
-        pipeline.add_scan(event)
-    elif isinstance(event, CameraImage):
-        pipeline.add_image(event)
-    else:
-        return
-    stamp_ns = None if isinstance(event, CameraModel) else event.stamp_ns
-    if stamp_ns is not None and not (isinstance(event, StampedTransform) and event.is_static):
-        for _ in pipeline.advance(stamp_ns):
-            pass
