@@ -16,7 +16,7 @@ INSTALL := PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --disable-
 # that fail are run once more.
 REAL_TIME := -m "slow and not soak" -rs
 
-.PHONY: help demo test soak lint docs bench config setup
+.PHONY: help demo test soak lint docs bench notebooks config setup
 .DEFAULT_GOAL := help
 
 help:  ## this index
@@ -45,6 +45,9 @@ docs: $(VENV)/.installed-docs  ## build the pages of the documentation into site
 bench:  ## time the product against its peers, some of which want numpy 1
 	@$(MAKE) --no-print-directory VENV=.venv-bench .venv-bench/.installed-bench
 	@set -e; for file in benchmarks/[a-z]*.py; do echo "$$file"; .venv-bench/bin/python "$$file"; done
+
+notebooks: $(VENV)/.installed-notebooks  ## open the notebooks
+	$(BIN)/jupyter lab notebooks
 
 config: $(VENV)/.installed  ## write the parameter file and docs/parameters.md from tracker/config.py
 	$(BIN)/python -m tracker.config_file config/hand_detector.yaml docs/parameters.md

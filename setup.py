@@ -33,6 +33,9 @@ setup(
             "cyclonedds==11.0.1; python_version < '3.14'",
             "distributed>=2024.8,<2027",
             "pyarrow>=16,<27",
+            "nbclient>=0.10,<0.12",
+            "ipykernel>=6.29,<8",
+            "ipywidgets>=8.1,<9",
         ]
     },
     # `colcon build --symlink-install` does not see pyproject.toml.
