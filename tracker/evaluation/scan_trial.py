@@ -21,6 +21,7 @@ from tracker.simulation.restaurant import draw_restaurant
 from tracker.simulation.scene import Scene
 from tracker.simulation.shown_hands import show_hands
 from tracker.simulation.stream import map_from_camera, map_from_laser
+from tracker.tracking.innovations import Watch
 from tracker.transforms import StampedTransform
 
 
@@ -43,9 +44,17 @@ def scan_trial(scenario: ScanScenario, config: Config, seed: int, trial: int) ->
 
 
 def play_scan_trial(
-    scenario: ScanScenario, config: Config, seed: int, trial: int
+    scenario: ScanScenario, config: Config, seed: int, trial: int, watch: Watch | None = None
 ) -> Iterator[tuple[Truth, FrameResult]]:
-    """What is true and what the pipeline makes of it, frame by frame."""
+    """What is true and what the pipeline makes of it, frame by frame.
+
+    Args:
+        scenario: People and sensors.
+        config: The pipeline's parameters.
+        seed: Of the study.
+        trial: From 0.
+        watch: Passed on to the tracker.
+    """
     rng = trial_rng(seed, trial)
     low, high = scenario.people
     scene = draw_restaurant(
@@ -58,7 +67,7 @@ def play_scan_trial(
         hand_up_s=scenario.hand_up_s,
         hand_down_s=scenario.hand_down_s,
     )
-    yield from play_scene(scenario, scene, config, rng)
+    yield from play_scene(scenario, scene, config, rng, watch=watch)
 
 
 def play_scene(
@@ -67,6 +76,7 @@ def play_scene(
     config: Config,
     rng: np.random.Generator,
     believed: Scene | None = None,
+    watch: Watch | None = None,
 ) -> Iterator[tuple[Truth, FrameResult]]:
     """Play a scene of one's own, whose robot stands still.
 
@@ -77,6 +87,7 @@ def play_scene(
         rng: All randomness.
         believed: Whose mountings of camera and laser the transforms tell; the scene's own where
             None.
+        watch: Passed on to the tracker.
 
     Yields:
         What is true and what the pipeline makes of it, frame by frame.
@@ -85,7 +96,7 @@ def play_scene(
     camera = scene.camera
     view = Viewpoint.of(camera, map_from_camera(scene, 0.0))
     detector = _ShownHands(scenario, scene, view, rng)
-    pipeline = Pipeline(config, detector)
+    pipeline = Pipeline(config, detector, watch=watch)
     pipeline.set_camera(CameraModel(camera.fx, camera.fy, camera.cx, camera.cy))
     start_ns = scene.start_s * 1_000_000_000
     for frame, pose in [
