@@ -13,6 +13,7 @@ NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 #: Put after a notebook's first code cell, which holds what a reader may turn.
 SMALL = {
     "01_is_the_filter_consistent": "SECONDS, TRIALS, SCENES = 12.0, 50, 1",
+    "02_tuning_the_gains": "SECONDS, TRIALS, SCENES, UNSEEN = 5.0, 3, 1, 2",
     "03_ranging_and_calibration": "SECONDS = 50.0",
     "04_what_noise_does": "STEPS, TRIALS, SECONDS, FILTER_TRIALS = 2, 1, 5.0, 20",
 }
