@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
+import yaml
 
 from tracker.config import Config
 
@@ -50,7 +51,9 @@ def test_a_notebook_runs_and_leaves_parameters_for_the_node(path, tmp_path, monk
     ]
     assert said == []
     written = tmp_path / f"{path.stem}.yaml"
-    assert Config.from_yaml(written) != Config()
+    assert isinstance(Config.from_yaml(written), Config)
+    document = yaml.safe_load(written.read_text(encoding="utf-8"))
+    assert list(document["hand_detector"]["ros__parameters"]) == list(Config.model_fields)
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
