@@ -103,7 +103,8 @@ def calibrate(sightings: Sightings) -> Calibration:
             break
     taken = sightings[rows]
     error = _errors(taken, state)
-    covariance = _covariance(taken, state, free) * len(rows) / groups
+    # So many errors as there are groups, less what the estimate itself has taken of them.
+    covariance = _covariance(taken, state, free) * len(rows) / (groups - len(free))
     _check_determined(np.sqrt(np.diag(covariance)))
     lateral_m = np.abs(error) * np.hypot(taken.body_xy_m[:, 0], taken.body_xy_m[:, 1])
     return Calibration(
@@ -168,7 +169,7 @@ def _covariance(sightings: Sightings, state: FloatArray, free: IntArray) -> Floa
     shifted = [_errors(sightings, state + step * np.eye(4)[number]) for number in free]
     slope = normalize_angle(np.stack(shifted, axis=-1) - _errors(sightings, state)[:, None]) / step
     slope = slope / sightings.std_rad[:, None]
-    spread = (pulled @ pulled) / max(len(error) - len(free), 1) / inside**2
+    spread = float(np.mean(pulled**2)) / inside**2
     return np.asarray(spread * np.linalg.pinv(slope.T @ slope, rcond=1e-12, hermitian=True))
 
 
