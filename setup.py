@@ -32,7 +32,7 @@ setup(
             "numba>=0.60,<0.70; python_version < '3.15'",
             "cyclonedds==11.0.1; python_version < '3.14'",
             "distributed>=2024.8,<2027",
-            "pyarrow>=16,<27",
+            "pyarrow>=16,<26",
             "nbclient>=0.10,<0.12",
             "ipykernel>=6.29,<8",
             "ipywidgets>=8.1,<9",

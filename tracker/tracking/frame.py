@@ -192,7 +192,17 @@ def _update(
 
 
 def _teller(watch: Watch, stamp_ns: int, people: People, config: Config) -> Callable[..., None]:
-    return lambda *numbers: watch(Round(stamp_ns, people.id, *numbers, config))
+    def tell(
+        belief: Belief,
+        existence: FloatArray,
+        chance: FloatArray,
+        claims: Measurements,
+        pairs: Pairs,
+        chosen: IntArray,
+    ) -> None:
+        watch(Round(stamp_ns, people.id, belief, existence, chance, claims, pairs, chosen, config))
+
+    return tell
 
 
 def _left(claims: Measurements, taken: IntArray) -> Measurements:
