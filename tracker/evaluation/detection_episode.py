@@ -26,10 +26,11 @@ from tracker.simulation.stream import map_from_camera
 #: Images within which a hand must be found.
 FRAMES_TO_FIND = 30
 
-_WRIST_OFF_M, _WRIST_OFF_RAD = (
-    0.2,
-    0.03,
-)  # a track farther from the wrist's ray is not of this hand
+#: A track farther than this from the wrist's ray is not of this hand ...
+_WRIST_OFF_M, _WRIST_OFF_RAD = 0.2, 0.03
+#: ... unless it is within half the body's width of the body's: a track aims at the torso where the
+#: pose is known.
+_BODY_OFF_M = 0.2
 _FINER = 1.5  # figures are painted this much finer than they are seen
 
 
@@ -68,11 +69,15 @@ def score_caller(
     truth_px = raised_hand_pixels(scene, view, moment, 0)
     hand_px = float(np.linalg.norm(truth_px[12] - truth_px[0]))
     wrist_rad = -np.arctan2(truth_px[0, 0] - scene.camera.cx, scene.camera.fx)
-    near_rad = _WRIST_OFF_M / scene.people[0].path[0].x_m + _WRIST_OFF_RAD
+    x_m, y_m = scene.people[0].path[0].x_m, scene.people[0].path[0].y_m
+    body_rad = np.arctan2(y_m, x_m)
+    near_rad, near_body_rad = _WRIST_OFF_M / x_m + _WRIST_OFF_RAD, _BODY_OFF_M / x_m
     errors: list[float] = []
     frames, false_raises, raised_before = 0, 0, set[int]()
     for time_s, people, result in _play(scene, detector, config, rng):
-        is_of_hand = np.abs(_bearings(result) - wrist_rad) <= near_rad
+        bearings = _bearings(result)
+        is_of_hand = np.abs(bearings - wrist_rad) <= near_rad
+        is_of_hand |= np.abs(bearings - body_rad) <= near_body_rad
         is_early = time_s < HAND_UP_S - ARM_MOTION_S
         new = [row for row in _raised_rows(result) if result.tracks.id[row] not in raised_before]
         false_raises += sum(bool(is_early or not is_of_hand[row]) for row in new)

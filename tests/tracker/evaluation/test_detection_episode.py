@@ -103,3 +103,14 @@ def test_the_real_models_find_a_drawn_hand_at_one_meter(model_store):
     assert score.frames is not None
     assert score.landmark_error < 0.06  # of the hand; drawn hands measure 0.016 to 0.035
     assert score.false_raises == 0
+
+
+@pytest.mark.parametrize(("beside_m", "found"), [(0.0, True), (0.15, True), (-0.5, False)])
+def test_a_track_on_the_bodys_bearing_is_the_callers(scene, hand_px, beside_m, found):
+    camera, place = scene.camera, scene.people[0].path[0]
+    hand_side = np.sign(hand_px[0, 0] - camera.cx + camera.fx * place.y_m / place.x_m)
+    body_px = camera.cx - camera.fx * place.y_m / place.x_m
+    column = body_px + hand_side * camera.fx * beside_m / place.x_m
+    moved = hand_px + np.array([column - hand_px[0, 0], 0.0])
+    score = score_caller(scene, Scripted(moved, UP), CONFIG, np.random.default_rng(2))
+    assert (score.frames is not None) is found
