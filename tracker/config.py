@@ -175,6 +175,11 @@ class Config(BaseModel):
         "new hands in each image.",
         group="perception", live=True, ge=1, le=64,
     )  # fmt: skip
+    piece_confidence: float = _parameter(
+        0.35, "Score from which the search of a piece of the picture has the landmark model look: "
+        "palms of far hands score low, and what is none is sorted out by that model.",
+        group="perception", live=True, gt=0.0, lt=1.0,
+    )  # fmt: skip
     search_lean_max_deg: float = _parameter(
         75.0, "`raise_rule: palm`: hands that lean farther to a side are neither read nor "
         "followed; 180 follows lowered hands as well.",
@@ -209,18 +214,21 @@ class Config(BaseModel):
         group="pose",
     )  # fmt: skip
     pose_opinion: Literal["none", "veto", "full"] = _parameter(
-        "none", "What body poses say about the hands found: none (they are not asked), veto (a "
-        "hand at its owner's head is not up, and the LiDAR is asked about the torso) or full (an "
-        "arm that is up is a raised hand, too, where no hand was found).",
+        "veto", "`detector: hands`: what body poses say about the hands. none: they are not "
+        "asked; veto: the owner of a hand that `raise_rule: palm` calls raised is looked for, one "
+        "at their head or before the body is not up, and the LiDAR is asked about the torso; "
+        "full: the whole picture is watched, and an arm that is up is a raised hand, too, where "
+        "no hand was found.",
         group="pose",
     )  # fmt: skip
     pose_search_period: int = _parameter(
-        2, "`pose_opinion`: people are searched for in one strip of every so many processed "
+        2, "`pose_opinion: full`: people are searched for in one strip of every so many processed "
         "images.",
         unit="frames", group="pose", live=True, ge=1, le=1000,
     )  # fmt: skip
     pose_reads_per_frame: int = _parameter(
-        1, "`pose_opinion`: people whose pose is read anew in an image, those most due first.",
+        1, "`pose_opinion: full`: people whose pose is read anew in an image, those most due "
+        "first.",
         group="pose", live=True, ge=1, le=64,
     )  # fmt: skip
     pose_confidence: float = _parameter(
@@ -236,9 +244,14 @@ class Config(BaseModel):
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
     hand_head_clearance: float = _parameter(
-        1.8, "A hand whose fingers' roots are nearer than this to its owner's nose, eyes or ears "
+        0.4, "A hand whose fingers' roots are nearer than this to its owner's nose, eyes or ears "
         "is not up, but at the head.",
-        unit="palm lengths", group="pose", live=True, ge=0.0, le=10.0,
+        unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
+    )  # fmt: skip
+    hand_shoulder_rise_min: float = _parameter(
+        -0.05, "A hand whose fingers' roots are not so far above its owner's shoulders is not up, "
+        "but before the body, as of people who talk.",
+        unit="shoulder widths", group="pose", live=True, ge=-3.0, le=3.0,
     )  # fmt: skip
 
     # Ranging.

@@ -22,6 +22,7 @@ from tracker.containers import (
     IntArray,
     PerceptionWork,
 )
+from tracker.perception.clearing import PictureClearer
 from tracker.perception.landmarks import Landmarks
 from tracker.perception.movement import Movement
 from tracker.perception.palm_search import Palms, Window
@@ -81,6 +82,7 @@ class HandFollower:
         self._pieces = pieces
         self._reader = reader
         self._plan: SearchPlan | None = None
+        self._clearer = PictureClearer()
         self._movement = Movement()
         self._regions = Regions.none()
         self._rows = np.zeros(0, dtype=np.int64)
@@ -118,13 +120,14 @@ class HandFollower:
         if budget is not None:
             places = max(1, min(places, budget - len(regions)))
         began_s = time.perf_counter()
-        searches = self._searches(image, regions, expected_px, config, places if room else 0)
-        hands, palms = self._reader.read_beside(image.bgr, regions, searches)
+        bgr = self._clearer.clear(image.bgr)
+        searches = self._searches(bgr, regions, expected_px, config, places if room else 0)
+        hands, palms = self._reader.read_beside(bgr, regions, searches)
         searched_s = time.perf_counter()
         found = _regions_of(palms, config)
         found = drop_known(found, regions)[:room]
         if len(found):
-            new_hands, _ = self._reader.read_beside(image.bgr, found, ())
+            new_hands, _ = self._reader.read_beside(bgr, found, ())
             hands = Landmarks.concatenate(hands, new_hands)
             rows = np.concatenate([rows, np.full(len(found), -1)])
         keep = np.flatnonzero(hands.score >= config.tracking_confidence)
@@ -145,13 +148,14 @@ class HandFollower:
         """Follow nobody any more."""
         self._regions = Regions.none()
         self._rows = np.zeros(0, dtype=np.int64)
+        self._clearer.reset()
         self._movement.reset()
         self._plan = None
         self._last = None
 
     def _searches(
         self,
-        image: CameraImage,
+        bgr: ImageArray,
         known: Regions,
         expected_px: FloatArray,
         config: Config,
@@ -160,17 +164,19 @@ class HandFollower:
         """The palm searches of this image, to be called beside each other."""
         if count == 0:
             return []
-        size = (image.width, image.height)
-        moved_px = self._movement.boxes(image.bgr)
+        size = (bgr.shape[1], bgr.shape[0])
+        moved_px = self._movement.boxes(bgr)
         whole = np.array([0, 0, *size])
         if self._plan is None:
             self._plan = SearchPlan(size)
-        windows = self._plan.choose(count, _without(expected_px, known), moved_px)
+        windows = self._plan.choose(count, _without(expected_px, known), _without(moved_px, known))
         confidence, shrink = config.detection_confidence, config.downscale_factor
         return [
-            partial(self._whole.find, image.bgr, confidence, shrink=shrink)
+            partial(self._whole.find, bgr, confidence, shrink=shrink)
             if np.array_equal(window, whole)
-            else partial(self._pieces.find, image.bgr, confidence, window=_as_window(window))
+            else partial(
+                self._pieces.find, bgr, config.piece_confidence, window=_as_window(window)
+            )
             for window in windows
         ]
 

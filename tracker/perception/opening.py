@@ -11,6 +11,7 @@ from tracker.perception.detector import HandDetector
 from tracker.perception.hand_finder import HandFinder
 from tracker.perception.mediapipe_hands import MediapipeHands
 from tracker.perception.models import ModelStore
+from tracker.perception.owner_finder import OwnerFinder, file_look, mediapipe_look
 from tracker.perception.pose_file import PoseFileFinder
 from tracker.perception.pose_hands import PoseHands
 from tracker.perception.second_opinion import SecondOpinion
@@ -30,14 +31,15 @@ def open_detector(config: Config, store: ModelStore | None = None) -> HandDetect
     store = store or ModelStore()
     if config.detector == "pose":
         return PoseHands(_open_bodies(config, store, everyone=True), config)
-    hands: HandDetector
     if config.detector == "mediapipe":
-        hands = MediapipeHands(config)
-    else:
-        hands = HandFinder(config, store)
+        return MediapipeHands(config)
+    hands = HandFinder(config, store)
     if config.pose_opinion == "none":
         return hands
-    return SecondOpinion(hands, _open_bodies(config, store, everyone=False), config)
+    if config.pose_opinion == "full":
+        return SecondOpinion(hands, _open_bodies(config, store, everyone=False), config)
+    look = file_look(config) if config.pose_model else mediapipe_look(store, config)
+    return SecondOpinion(hands, OwnerFinder(look), config)
 
 
 def _open_bodies(config: Config, store: ModelStore, *, everyone: bool) -> BodyDetector:

@@ -55,6 +55,22 @@ class PoseFile:
                 f"{', '.join(_NUMBERS)}."
             )
 
+    @staticmethod
+    def open(path: Path, config: Config) -> PoseFile:
+        """The model of an ONNX file.
+
+        Raises:
+            ModelFileError: The file is absent, no ONNX file, or of no layout that is understood.
+            ConfigError: ONNX Runtime has no such execution provider.
+        """
+        session = open_file(
+            path.expanduser(),
+            threads=config.inference_threads,
+            provider=config.execution_provider,
+            remedy="`pose_model` must name a file in ONNX format, or be empty",
+        )
+        return PoseFile(session, str(path))
+
     def look(self, bgr: ImageArray, window: Window) -> Bodies:
         """Everybody whom the model sees in a part of the picture, however unsure.
 
@@ -117,13 +133,7 @@ class PoseFileFinder:
             ModelFileError: The file is absent, no ONNX file, or of no layout that is understood.
             ConfigError: ONNX Runtime has no such execution provider.
         """
-        session = open_file(
-            path.expanduser(),
-            threads=config.inference_threads,
-            provider=config.execution_provider,
-            remedy="`pose_model` must name a file in ONNX format, or be empty",
-        )
-        return PoseFileFinder(PoseFile(session, str(path)), config, everyone=everyone)
+        return PoseFileFinder(PoseFile.open(path, config), config, everyone=everyone)
 
     def find(self, image: CameraImage) -> Bodies:
         """Everybody known; those looked at in this very image have age 0.

@@ -7,7 +7,7 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray
 from tracker.perception.bodies import HEAD, SHOULDERS, WRISTS, Bodies
-from tracker.perception.raise_rules import MIDDLE_ROOT, WRIST
+from tracker.perception.raise_rules import MIDDLE_ROOT
 
 #: A hand belongs to the body with a wrist so close to its own, in widths of the shoulders: the
 #: pose model errs by a sixth of a hand, and the arm may have moved since (guess).
@@ -79,19 +79,19 @@ def _wrists_apart_px(hands: Hands, bodies: Bodies) -> FloatArray:
 
 
 def hands_at_head(
-    hands: Hands, bodies: Bodies, owner: IntArray, clearance_palms: float
+    hands: Hands, bodies: Bodies, owner: IntArray, clearance_shoulders: float
 ) -> BoolArray:
     """Hands at their owner's head: they hold a telephone, drink, scratch.
 
     Another one's head may well be behind a raised hand, and a wrist above the whole head is not
-    at it.
+    at it. The hand's own length is no yardstick: that of a closed one is guessed by the model.
 
     Args:
         hands: What the hand models found.
         bodies: Who is there.
         owner: Shape (H,): rows of `bodies`, or -1.
-        clearance_palms: How far the fingers' roots must be from nose, eyes and ears, in palm
-            lengths.
+        clearance_shoulders: How far the fingers' roots must be from nose, eyes and ears, in widths
+            of the shoulders.
 
     Returns:
         Shape (H,).
@@ -100,8 +100,32 @@ def hands_at_head(
     rows = np.flatnonzero(owner >= 0)
     owners = bodies[owner[rows]]
     wrist, knuckles = hands.wrist_px[rows], hands.landmarks_px[rows, MIDDLE_ROOT]
-    palm = np.linalg.norm(knuckles - hands.landmarks_px[rows, WRIST], axis=-1)
     top = np.where(owners.is_visible[:, HEAD], owners.points_px[:, HEAD, 1], np.inf).min(axis=1)
-    close = head_distance_px(owners, knuckles) < clearance_palms * palm
+    close = head_distance_px(owners, knuckles) < clearance_shoulders * owners.shoulder_px
     answer[rows] = close & (wrist[:, 1] > top)
+    return answer
+
+
+def hands_below_shoulders(
+    hands: Hands, bodies: Bodies, owner: IntArray, rise_min_shoulders: float
+) -> BoolArray:
+    """Hands that their owner holds before the body, as people do who talk.
+
+    Args:
+        hands: What the hand models found.
+        bodies: Who is there.
+        owner: Shape (H,): rows of `bodies`, or -1.
+        rise_min_shoulders: How far the fingers' roots must be above the middle of the shoulders,
+            in their widths.
+
+    Returns:
+        Shape (H,); False where a shoulder is not seen.
+    """
+    answer = np.zeros(len(hands), dtype=bool)
+    rows = np.flatnonzero(owner >= 0)
+    owners = bodies[owner[rows]]
+    shoulders = owners.points_px[:, SHOULDERS, 1].mean(axis=1)
+    rise = (shoulders - hands.landmarks_px[rows, MIDDLE_ROOT, 1]) / owners.shoulder_px
+    seen = owners.is_visible[:, SHOULDERS].all(axis=1)
+    answer[rows] = seen & (rise < rise_min_shoulders)
     return answer

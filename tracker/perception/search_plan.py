@@ -13,7 +13,7 @@ from collections import deque
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray
-from tracker.perception.regions import box_overlap
+from tracker.perception.regions import box_overlap, first_of_each
 
 #: A tile's side, in short sides of the picture: at 640 x 480 a tile of 240 px, in which a hand at
 #: three meters is 28 px long.
@@ -28,6 +28,13 @@ TILE_STEPS = (0.42, 0.5)
 #: How many times as fast as a tile's the need of a place grows; where somebody is expected and
 #: something moved, an arm may have gone up.
 EXPECTED_WEIGHT, MOVED_WEIGHT = 10.0, 2.0
+#: The window around something that moved: its least side, in short sides of the picture, in which
+#: a hand at five meters is as large as one at three is in a tile; and its side in extents of what
+#: moved.
+MOVED_SIDE, MOVED_MARGIN = 1 / 4, 1.5
+#: For so many images after something moved a hand is likelier there, in so many places at most:
+#: the latest ones.
+MOVED_IMAGES, MOVED_PLACES = 20, 6
 #: The whole picture is searched in every so many images: a hand near by, which it shows, is found
 #: in time to be called raised in the third image.
 WHOLE_PERIOD = 2
@@ -56,6 +63,7 @@ class SearchPlan:
         # As if the rotation had been going on: ages that are all alike would come due all at once.
         self._rotation_turn = np.arange(-len(self._rotation), 0)
         self._lately: deque[tuple[int, FloatArray]] = deque()
+        self._moved_px, self._moved_turn = np.zeros((0, 4)), np.zeros(0)
 
     def choose(self, count: int, expected_px: FloatArray, moved_px: FloatArray) -> IntArray:
         """The places to search in the next image; every call is one image.
@@ -65,7 +73,8 @@ class SearchPlan:
             expected_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows where raised hands
                 are expected; each is a place of its own.
             moved_px: Shape (M, 4): boxes in which something moved; they draw attention to the
-                places that hold their centers.
+                places that hold their centers, and for a while the window around each is a place
+                of its own: a hand that is up has come there.
 
         Returns:
             Shape (K, 4): windows, the neediest first; K is `count`, or all places if these are
@@ -75,7 +84,9 @@ class SearchPlan:
         while self._lately and self._lately[0][0] <= self._turn - NEW_AGE:
             self._lately.popleft()
         tiles = len(self._rotation)
-        places = np.concatenate([self._rotation, clip_boxes(expected_px, self._size)])
+        self._remember(moved_windows(moved_px, self._size))
+        expected_px = clip_boxes(expected_px, self._size)
+        places = np.concatenate([self._rotation, expected_px, self._moved_px])
         weight = np.where(_holds_center(places, moved_px), MOVED_WEIGHT, 1.0)
         weight[tiles:] *= EXPECTED_WEIGHT
         weight[0] = 0.0  # it has a period of its own
@@ -95,6 +106,15 @@ class SearchPlan:
         windows[around] += self._sway(windows[around])
         whole_pixels: IntArray = clip_boxes(windows, self._size).round().astype(np.int64)
         return whole_pixels
+
+    def _remember(self, windows: FloatArray) -> None:
+        """Keep windows in which something moved, the latest first and each place once."""
+        windows = np.concatenate([windows, self._moved_px])
+        turn = np.append(np.full(len(windows) - len(self._moved_px), self._turn), self._moved_turn)
+        keep = turn > self._turn - MOVED_IMAGES
+        keep &= first_of_each(box_overlap(windows, windows) > SAME_PLACE_OVERLAP, range(len(turn)))
+        latest = np.flatnonzero(keep)[:MOVED_PLACES]
+        self._moved_px, self._moved_turn = windows[latest], turn[latest]
 
     def _sway(self, windows: FloatArray) -> FloatArray:
         """How far the windows around people move this time, shape (W, 4)."""
@@ -131,6 +151,24 @@ def rotation_windows(width: int, height: int) -> FloatArray:
             _tiles(_spread(width, side, column_step), tops, side),
             _tiles(_spread(width, far_side, column_step), far_tops, far_side),
         ]
+    )
+
+
+def moved_windows(moved_px: FloatArray, image_size: tuple[int, int]) -> FloatArray:
+    """Windows in which the hand is if what moved was an arm that went up.
+
+    Args:
+        moved_px: Shape (M, 4): boxes in which something moved, from one image to the next.
+        image_size: Width and height in pixels.
+
+    Returns:
+        Shape (M, 4): squares around the upper ends of the boxes, cut to the picture.
+    """
+    extent = (moved_px[:, 2:] - moved_px[:, :2]).max(axis=1, initial=0.0)
+    half = np.maximum(MOVED_MARGIN * extent, MOVED_SIDE * min(image_size)) / 2
+    upper = np.stack([moved_px[:, [0, 2]].mean(axis=1), moved_px[:, 1]], axis=-1)
+    return clip_boxes(
+        np.concatenate([upper - half[:, None], upper + half[:, None]], axis=-1), image_size
     )
 
 

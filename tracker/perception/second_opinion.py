@@ -11,11 +11,13 @@ from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
 from tracker.perception.bodies import Bodies
 from tracker.perception.body_detector import BodyDetector
 from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.owner_finder import OwnerFinder
 from tracker.perception.pose_hands import draw_hands
 from tracker.perception.pose_rules import (
     arms_without_hand,
     find_owners,
     hands_at_head,
+    hands_below_shoulders,
     judge_arms,
 )
 
@@ -56,6 +58,10 @@ class SecondOpinion:
     def find(self, image: CameraImage) -> Hands:
         """Every hand of the image, in pixels of the full image."""
         hands = self._hands.find(image)
+        if self._config.raise_rule == "image" and self._config.pose_opinion == "veto":
+            return hands  # the specification's rule stays what it is
+        if isinstance(self._bodies, OwnerFinder):
+            self._bodies.expect(hands)
         bodies = self._bodies.find(image)
         return weigh_opinions(hands, bodies, (image.width, image.height), self._config)
 
@@ -87,7 +93,8 @@ def weigh_opinions(
         config: `pose_opinion` and what it needs.
 
     Returns:
-        The same hands, those at their owner's head not raised, with the owners' torsos; with
+        The same hands, those at their owner's head or below the shoulders not raised, with the
+        owners' torsos; with
         `pose_opinion: full` after them a schematic hand for each arm that is up in this very
         image and has none.
     """
@@ -95,8 +102,9 @@ def weigh_opinions(
     owner = find_owners(hands, bodies)
     torso = np.full((len(hands), 2), np.nan)
     torso[owner >= 0] = bodies.torso_px[owner[owner >= 0]]
-    at_head = hands_at_head(hands, bodies, owner, config.hand_head_clearance)
-    hands = replace(hands, raised=hands.raised & ~at_head, torso_px=torso)
+    refused = hands_at_head(hands, bodies, owner, config.hand_head_clearance)
+    refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
+    hands = replace(hands, raised=hands.raised & ~refused, torso_px=torso)
     if config.pose_opinion != "full":
         return hands
     raised, _ = judge_arms(bodies, config)

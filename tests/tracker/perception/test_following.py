@@ -165,10 +165,15 @@ def test_no_more_hands_than_allowed_even_after_the_limit_is_lowered():
 
 def test_parameters_reach_the_search():
     world = World()
-    config = Config(detection_confidence=0.7, downscale_factor=3, search_regions_per_frame=2)
+    config = Config(
+        detection_confidence=0.7,
+        piece_confidence=0.4,
+        downscale_factor=3,
+        search_regions_per_frame=2,
+    )
     assert len(follower_of(world).step(image(), config)) == 0
     # The whole frame is shrunk; the first tile is cut from the full image.
-    assert world.searches == [(0.7, None, 3), (0.7, (0, 0, 240, 240), 1)]
+    assert world.searches == [(0.7, None, 3), (0.4, (0, 0, 240, 240), 1)]
 
 
 def test_a_budget_shrinks_the_search_but_leaves_one_place_and_all_hands():

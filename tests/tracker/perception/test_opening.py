@@ -19,7 +19,8 @@ from tracker.pipeline import Pipeline
 @pytest.mark.parametrize(
     ("parameters", "kind"),
     [
-        ({}, HandFinder),
+        ({}, SecondOpinion),
+        ({"pose_opinion": "none"}, HandFinder),
         ({"pose_opinion": "veto"}, SecondOpinion),
         ({"pose_opinion": "full"}, SecondOpinion),
         ({"detector": "pose"}, PoseHands),

@@ -8,6 +8,7 @@ from tracker.perception.pose_rules import (
     arms_without_hand,
     find_owners,
     hands_at_head,
+    hands_below_shoulders,
     judge_arms,
 )
 
@@ -96,9 +97,37 @@ def test_bodies_inside_a_large_hand_have_hands(body, upright_hand):
 )
 def test_a_hand_at_its_owners_head_is_told_from_one_beside_it(body, upright_hand, wrist, at_head):
     somebody, hand = body(right_wrist=wrist), upright_hand(wrist)
-    assert hands_at_head(hand, somebody, np.array([0]), 1.8).tolist() == [at_head]
+    assert hands_at_head(hand, somebody, np.array([0]), 0.4).tolist() == [at_head]
 
 
 def test_the_head_of_another_one_may_be_behind_a_raised_hand(body, upright_hand):
     hand = upright_hand((183, 75))
-    assert hands_at_head(hand, body(), np.array([-1]), 1.8).tolist() == [False]
+    assert hands_at_head(hand, body(), np.array([-1]), 0.4).tolist() == [False]
+
+
+def test_shoulders_are_the_yardstick_however_small_the_hand_model_takes_a_closed_hand(
+    body, upright_hand
+):
+    wrist = (183, 75)
+    tiny = upright_hand(wrist, palm_px=4.0)
+    assert hands_at_head(tiny, body(right_wrist=wrist), np.array([0]), 0.4).tolist() == [True]
+
+
+@pytest.mark.parametrize(
+    ("knuckles_row", "below"), [(103, True), (101, False), (60, False)],
+    ids=["before the chest", "at the shoulders", "beside the head"],
+)  # fmt: skip
+def test_a_hand_before_the_body_is_told_from_one_that_is_up(
+    body, upright_hand, knuckles_row, below
+):
+    # Shoulders are 40 px wide, in row 100: 2 px below them is the limit.
+    wrist = (160, knuckles_row + 10)
+    hand, somebody = upright_hand(wrist, palm_px=10.0), body(right_wrist=wrist)
+    assert hands_below_shoulders(hand, somebody, np.array([0]), -0.05).tolist() == [below]
+    assert hands_below_shoulders(hand, somebody, np.array([-1]), -0.05).tolist() == [False]
+
+
+def test_a_hand_whose_owners_shoulders_are_hidden_is_not_refused(body, upright_hand):
+    hidden = body(left_shoulder=None, right_wrist=(160, 160))
+    hand = upright_hand((160, 160))
+    assert hands_below_shoulders(hand, hidden, np.array([0]), -0.05).tolist() == [False]

@@ -1,7 +1,13 @@
 import numpy as np
 import pytest
 
-from tracker.perception.search_plan import SearchPlan, clip_boxes, rotation_windows
+from tracker.perception.search_plan import (
+    MOVED_IMAGES,
+    SearchPlan,
+    clip_boxes,
+    moved_windows,
+    rotation_windows,
+)
 
 SIZE = (640, 480)
 NOWHERE = np.zeros((0, 4))
@@ -133,3 +139,31 @@ def test_the_same_calls_make_the_same_choices():
 def test_boxes_outside_of_the_picture_are_left_out_and_others_cut():
     boxes = np.array([[-50.0, -20, 30, 40], [700, 0, 800, 90], [600, 470, 900, 900]])
     assert clip_boxes(boxes, SIZE).tolist() == [[0, 0, 30, 40], [600, 470, 640, 480]]
+
+
+def test_the_window_around_a_small_movement_is_a_quarter_of_the_picture_high():
+    arm = np.array([[300.0, 200.0, 320.0, 240.0]])
+    assert moved_windows(arm, SIZE).tolist() == [[250, 140, 370, 260]]
+    near = np.array([[200.0, 200.0, 300.0, 400.0]])
+    assert moved_windows(near, SIZE).tolist() == [[100, 50, 400, 350]]
+    assert moved_windows(NOWHERE, SIZE).shape == (0, 4)
+
+
+def test_where_something_moved_is_searched_often_for_a_while():
+    plan, arm = SearchPlan(SIZE), np.array([[300.0, 200.0, 320.0, 240.0]])
+    place = (250, 140, 370, 260)
+    choices(1, 1, moved=arm, plan=plan)
+    seen = [shows(frame, place) for frame in choices(MOVED_IMAGES - 1, 3, plan=plan)]
+    assert sum(seen) >= 4
+    later = [shows(frame, place) for frame in choices(30, 3, plan=plan)]
+    assert not any(later)
+
+
+def test_movements_do_not_starve_the_rest():
+    plan, rng = SearchPlan(SIZE), np.random.default_rng(5)
+    seen = set()
+    for _ in range(400):
+        low = rng.uniform(0, 400, (10, 2))
+        (frame,) = choices(1, 3, moved=np.concatenate([low, low + 30], axis=1), plan=plan)
+        seen |= set(frame)
+    assert all_places(*SIZE) <= seen

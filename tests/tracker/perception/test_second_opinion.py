@@ -5,6 +5,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, Hands, PerceptionWork
 from tracker.perception import HandDetector
 from tracker.perception.bodies import Bodies
+from tracker.perception.owner_finder import OwnerFinder
 from tracker.perception.second_opinion import SecondOpinion, weigh_opinions
 
 SIZE = (640, 480)
@@ -27,6 +28,26 @@ def test_a_raised_hand_beside_the_head_stays_and_knows_its_torso(body, upright_h
     answer = weigh(upright_hand((148, 70)), body(**UP), opinion)
     assert answer.raised.tolist() == [True]
     np.testing.assert_allclose(answer.torso_px, [[200, 128]])
+
+
+@pytest.mark.parametrize("opinion", ["veto", "full"])
+def test_a_hand_that_gestures_before_the_chest_is_not_raised(body, upright_hand, opinion):
+    answer = weigh(upright_hand((160, 115)), body(right_wrist=(160, 115)), opinion)
+    assert answer.raised.tolist() == [False]
+
+
+def test_the_specifications_rule_is_not_vetoed(body, upright_hand):
+    hands, bodies = Always(upright_hand((183, 78))), Always(body(**PHONING))
+    opinion = SecondOpinion(hands, bodies, Config(raise_rule="image"))
+    image = CameraImage(0, "", np.zeros((480, 640, 3), np.uint8))
+    assert opinion.find(image) is hands.answer
+
+
+def test_owners_are_looked_for_around_the_hands_just_found(body, upright_hand):
+    owners = OwnerFinder(lambda bgr, window: body(**PHONING))
+    opinion = SecondOpinion(Always(upright_hand((183, 78))), owners, Config())
+    image = CameraImage(0, "", np.zeros((480, 640, 3), np.uint8))
+    assert opinion.find(image).raised.tolist() == [False]
 
 
 def test_a_hand_without_a_body_stays_as_it_is(upright_hand):
