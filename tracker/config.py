@@ -176,8 +176,8 @@ class Config(BaseModel):
         group="perception", live=True, ge=1, le=64,
     )  # fmt: skip
     piece_confidence: float = _parameter(
-        0.35, "Score from which the search of a piece of the picture has the landmark model look: "
-        "palms of far hands score low, and what is none is sorted out by that model.",
+        0.35, "Score from which the search of a piece of the picture believes in a hand shorter "
+        "than `small_hand_px`: such palms score low, and the landmark model sorts them out.",
         group="perception", live=True, gt=0.0, lt=1.0,
     )  # fmt: skip
     search_lean_max_deg: float = _parameter(

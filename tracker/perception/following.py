@@ -45,6 +45,8 @@ SAME_REGION_OVERLAP = 0.5
 SAME_HAND_DISTANCE = 0.05
 #: A hand this many times smaller than another one that covers its middle is a part of it.
 SMALLER_HAND = 1.4
+#: The side of a region, in lengths of the hand.
+SIDE_HANDS = 2.0
 _NOWHERE = np.zeros((0, 4))
 
 
@@ -124,7 +126,7 @@ class HandFollower:
         searches = self._searches(bgr, regions, expected_px, config, places if room else 0)
         hands, palms = self._reader.read_beside(bgr, regions, searches)
         searched_s = time.perf_counter()
-        found = _regions_of(palms, config)
+        found = regions_of(palms, config)
         found = drop_known(found, regions)[:room]
         if len(found):
             new_hands, _ = self._reader.read_beside(bgr, found, ())
@@ -192,8 +194,11 @@ class HandFollower:
 
 
 def drop_known(found: Regions, known: Regions) -> Regions:
-    """The found regions that hold neither a known hand nor one that stands earlier among them."""
-    is_new = ~(overlap(found, known) > SAME_REGION_OVERLAP).any(axis=-1)
+    """The found regions that hold neither a known hand, or a part of one, nor an earlier one."""
+    apart_px = np.linalg.norm(found.center_px[:, None] - known.center_px[None], axis=-1)
+    is_part = SMALLER_HAND * found.side_px[:, None] < known.side_px
+    is_part &= apart_px < known.side_px / 4
+    is_new = ~(is_part | (overlap(found, known) > SAME_REGION_OVERLAP)).any(axis=-1)
     found = found[is_new]
     return found[first_of_each(overlap(found, found) > SAME_REGION_OVERLAP, range(len(found)))]
 
@@ -220,12 +225,14 @@ def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:
     return np.asarray(within & (SMALLER_HAND * side_px[:, None] < side_px))
 
 
-def _regions_of(found: Sequence[Palms], config: Config) -> Regions:
+def regions_of(found: Sequence[Palms], config: Config) -> Regions:
     """The regions of palms from several searches, the surest first."""
     palms = Palms.concatenate(Palms.none(), *found)
     palms = palms[np.argsort(-palms.score, kind="stable")]
     regions = regions_from_palms(palms.boxes_px, palms.keypoints_px)
-    return regions[_is_usable(regions) & _is_upward(regions, config)]
+    is_small = regions.side_px < SIDE_HANDS * config.small_hand_px
+    is_sure = is_small | (palms.score >= config.detection_confidence)
+    return regions[is_sure & _is_usable(regions) & _is_upward(regions, config)]
 
 
 def _is_upward(regions: Regions, config: Config) -> BoolArray:

@@ -3,7 +3,12 @@ import pytest
 
 from tracker.config import Config
 from tracker.containers import CameraImage
-from tracker.perception.following import HandFollower, drop_known, first_of_each_hand
+from tracker.perception.following import (
+    HandFollower,
+    drop_known,
+    first_of_each_hand,
+    regions_of,
+)
 from tracker.perception.landmarks import Landmarks
 from tracker.perception.palm_search import Palms
 from tracker.perception.regions import Regions
@@ -253,6 +258,29 @@ def test_found_regions_over_known_ones_are_dropped():
     found = regions((3, 0), (4, 0), (40, 0), (43, 0))
     left = drop_known(found, regions((0, 0)))
     assert left.center_px.tolist() == [[4, 0], [40, 0]]
+
+
+def test_a_smaller_region_within_a_known_hand_is_a_part_of_it():
+    known = Regions(np.array([[300.0, 200.0]]), np.array([190.0]), np.zeros(1))
+    found = Regions(
+        np.array([[310.0, 210.0], [310.0, 210.0], [360.0, 210.0]]),
+        np.array([114.0, 150.0, 60.0]),
+        np.zeros(3),
+    )
+    # The second overlaps by 0.62; the third is a smaller hand beside the middle.
+    assert drop_known(found, known).side_px.tolist() == [60.0]
+
+
+def test_an_unsure_palm_counts_where_it_is_small():
+    def unsure(size):
+        keypoints = np.full((1, 7, 2), 100.0)
+        keypoints[0, 0, 1] += size / 2
+        box = np.array([[100 - size / 2, 100 - size / 2, 100 + size / 2, 100 + size / 2]])
+        return Palms(box, keypoints, np.array([0.4]))
+
+    # Regions of 52 and 78 px; hands of 32 px have 64.
+    assert len(regions_of([unsure(20.0)], Config())) == 1
+    assert len(regions_of([unsure(30.0)], Config())) == 0
 
 
 def test_of_the_same_hand_the_surest_row_stays_and_order_is_kept():
