@@ -24,9 +24,7 @@ _SHRINK, _LEFT = 4, 0.25 * float(np.linalg.norm((0.114, 0.587, 0.299)))
 #: What differs by so many standard deviations of noise has moved.
 _MOVED_STD = 5.0
 #: Every so many rows and columns are measured.
-_STEP = 4
-#: Its answer to a picture's slopes and curves is nothing, that to noise 6 standard deviations.
-_NOISE_KERNEL = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.float32)
+_STEP = 8
 _MEDIAN_STD = 0.6745  # median of what is normally distributed, without its sign
 
 
@@ -45,7 +43,7 @@ class PictureClearer:
         Returns:
             A picture of the same shape; the very same where there is nothing to improve.
         """
-        green = np.ascontiguousarray(bgr[:, :, 1])
+        green = bgr[:, :, 1]
         noise_std = measure_noise(green)
         bright = float(np.percentile(green[::_STEP, ::_STEP], 98.0))
         gain = min(LIGHT / max(bright, 1.0), GAIN_MAX) if bright < DARK else 1.0
@@ -74,10 +72,14 @@ def measure_noise(gray: ImageArray) -> float:
     Source: Immerkaer, "Fast Noise Variance Estimation", Computer Vision and Image Understanding
         64(2), 1996; with the median for the mean, which edges would pull up.
     """
-    answer = cv2.filter2D(gray, cv2.CV_32F, _NOISE_KERNEL)[1:-1:_STEP, 1:-1:_STEP]
-    if answer.size == 0:
-        return 0.0
-    return float(np.median(np.abs(answer))) / (6.0 * _MEDIAN_STD)
+    height = len(gray)
+    above, here, below = (
+        gray[row : max(height - 2 + row, 0) : _STEP].astype(np.float32) for row in range(3)
+    )
+    bent = above - 2.0 * here + below
+    # Slopes and curves of the picture cancel out; of noise, 6 standard deviations are left.
+    bent = (bent[:, :-2] - 2.0 * bent[:, 1:-1] + bent[:, 2:])[:, ::2]
+    return float(np.median(np.abs(bent))) / (6.0 * _MEDIAN_STD) if bent.size else 0.0
 
 
 def _brighten(bgr: np.ndarray, gain: float) -> ImageArray:
