@@ -26,7 +26,9 @@ demo: $(VENV)/.installed  ## simulate a restaurant, replay it, print who raised 
 	$(BIN)/raised-hand demo
 
 test: $(VENV)/.installed-$(TESTED)  ## run the tests
-	$(BIN)/python -m pytest -n auto --maxprocesses 2 -m "not slow"
+	@# Compiled once beforehand, for all the processes that follow.
+	$(BIN)/python -c 'import tracker; tracker.PersonTracker()'
+	$(BIN)/python -m pytest -n auto --maxprocesses 2 -m "not slow" $(if $(NUMPY),--ignore=tests/notebooks)
 ifeq ($(NUMPY),)
 	$(BIN)/python -m pytest $(REAL_TIME) || $(BIN)/python -m pytest $(REAL_TIME) --last-failed
 endif

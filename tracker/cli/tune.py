@@ -118,8 +118,8 @@ def tune_command(
             f"{source}: is neither a scenario nor a recording that is there; `raised-hand tune` "
             "alone lists the scenarios."
         )
-    kinds = DEFAULT_KINDS if is_scenario else tuple(k for k in DEFAULT_KINDS if k != "life")
-    names = choose_parameters([word.strip() for word in params.split(",")] if params else kinds)
+    words = [word.strip() for word in params.split(",")] if params else DEFAULT_KINDS
+    names = choose_parameters(words)
     default = default_config(SCENARIOS[source]) if is_scenario else None
     base = parameters_from(config, param, default)
     _make_room(out)
@@ -130,6 +130,8 @@ def tune_command(
     else:
         topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
         objective = _recording(Path(source), base, topics)
+    if not params:
+        names = tuple(name for name in names if objective.judges(name))
     address = storage or f"sqlite:///{(out / 'tuning.db').resolve()}"
     try:
         with processes(jobs, trials) as executor, trials_bar(errors, trials) as progress:

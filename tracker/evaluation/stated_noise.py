@@ -20,17 +20,18 @@ _RANGE_MIN_M = 0.05
 
 
 def restate(
-    measurements: Measurements, config: Config, told_hand_offset_std_m: float
+    measurements: Measurements, config: Config, told_hand_offset_std_m: float | None
 ) -> Measurements:
     """The same measurements with the noise that ranging would state under `config`.
 
-    As `ranging: person` does without poses: a person in the scan has the same noise in both
+    As `ranging: person` does: a person in the scan has the same noise in both
     directions, and a hand without a range stands somewhere beside its body.
 
     Args:
         measurements: Bearings and ranges; positions are left alone.
         config: `range_std_m`, `hand_offset_std_m`, `unknown_range_m`.
-        told_hand_offset_std_m: The offset that is in the bearings alone now.
+        told_hand_offset_std_m: The offset that is in the bearings alone now; None leaves these
+            alone.
     """
     polar = measurements.model == MeasurementModel.POLAR
     range_m, noise = measurements.values[:, 1], np.array(measurements.covariance)
@@ -39,6 +40,8 @@ def restate(
     noise[ranged] = 0.0
     noise[ranged, 0, 0] = (config.range_std_m / far_m) ** 2
     noise[ranged, 1, 1] = config.range_std_m**2
+    if told_hand_offset_std_m is None:
+        return replace(measurements, covariance=noise)
     told, stated = (
         np.arctan2(offset_m, config.unknown_range_m) ** 2
         for offset_m in (told_hand_offset_std_m, config.hand_offset_std_m)

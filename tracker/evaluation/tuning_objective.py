@@ -56,6 +56,9 @@ class Objective(Protocol):
     def unseen(self, config: Config, run: Map = map) -> FloatArray:
         """The figure of each part that it never sees."""
 
+    def judges(self, name: str) -> bool:
+        """Whether its figures depend on a parameter at all."""
+
     def check(self, names: Sequence[str]) -> None:
         """Refuse parameters that it cannot judge, by a `ConfigError`."""
 
@@ -98,8 +101,12 @@ class ScenarioObjective:
         score = partial(_gospa_m, self.scenario, config, self.seed)
         return np.array(list(run(score, numbers)))
 
+    def judges(self, name: str) -> bool:
+        """Every parameter, by what becomes of it."""
+        return True
+
     def check(self, names: Sequence[str]) -> None:
-        """It judges every parameter, by what becomes of it."""
+        """There is nothing to refuse."""
 
     def describe(self) -> str:
         """All that decides on the figures."""
@@ -149,16 +156,21 @@ class RecordingObjective:
         """The mean score of each piece that it never sees."""
         return self._scores(self.steps, config, self._split_ns)
 
+    def judges(self, name: str) -> bool:
+        """Whether the measurements tell anything of a parameter."""
+        if name in STATED:
+            return name in self._restated
+        return tunable()[name].kind != "life"
+
     def check(self, names: Sequence[str]) -> None:
         """Refuse what the measurements tell nothing of."""
-        blind = [name for name in names if tunable()[name].kind == "life"]
-        if not self._can_restate:
-            blind += [name for name in names if name in STATED]
+        blind = [name for name in names if not self.judges(name)]
         if blind:
             raise ConfigError(
                 f"This recording says nothing about {', '.join(blind)}: what it foretells does "
-                "not depend on the life of tracks, and stated noise can be changed afterwards "
-                "under `ranging: person` without poses only. Choose others, or tune on a scenario."
+                "not depend on the life of tracks; stated noise can be changed afterwards under "
+                "`ranging: person` only, and that of hands without `pose_opinion` only. Choose "
+                "others, or tune on a scenario."
             )
 
     def describe(self) -> str:
@@ -168,10 +180,12 @@ class RecordingObjective:
         return f"{count} measurements from {first} to {last}, taken under {self.told}"
 
     @property
-    def _can_restate(self) -> bool:
-        told = self.told
-        poses = told.detector == "pose" or told.pose_opinion != "none"
-        return told.ranging == "person" and not poses
+    def _restated(self) -> tuple[str, ...]:
+        """Stated noise that can be told anew; which hands had a pose is not kept."""
+        if self.told.ranging != "person":
+            return ()
+        poses = self.told.detector == "pose" or self.told.pose_opinion != "none"
+        return ("range_std_m",) if poses else STATED
 
     @property
     def _split_ns(self) -> int:
@@ -182,8 +196,8 @@ class RecordingObjective:
         return (stamps_ns - self.steps[0].stamp_ns) // round(self.piece_s * 1e9)
 
     def _scores(self, steps: Sequence[Step], config: Config, from_ns: int) -> FloatArray:
-        if self._can_restate:
-            told_m = self.told.hand_offset_std_m
+        if self._restated:
+            told_m = self.told.hand_offset_std_m if self._restated == STATED else None
             steps = [
                 replace(step, measurements=restate(step.measurements, config, told_m))
                 for step in steps
