@@ -12,6 +12,9 @@ from tracker.cli.options import (
     ConfigOption,
     JsonOption,
     ParameterOption,
+    ReportOption,
+    check_is_no_folder,
+    command_line,
     console,
     errors,
     parameters_from,
@@ -59,6 +62,7 @@ def tune_command(
     out: Annotated[
         Path, typer.Option("--out", "-o", help="Folder for best.yaml, tuning.json, tuning.png.")
     ] = Path("tuning"),
+    report: ReportOption = None,
     as_json: JsonOption = False,
     scenes: Annotated[
         int,
@@ -107,6 +111,7 @@ def tune_command(
     from tracker.evaluation.tuning_objective import scenario_objective
     from tracker.evaluation.tuning_space import DEFAULT_KINDS, choose_parameters
     from tracker.recording import Topics
+    from tracker.report.tuning_page import tuning_page
     from tracker.report.tuning_table import parameters_table, verdict_table, write_tuning
 
     if source is None:
@@ -122,6 +127,7 @@ def tune_command(
     names = choose_parameters(words)
     default = default_config(SCENARIOS[source]) if is_scenario else None
     base = parameters_from(config, param, default)
+    check_is_no_folder("--report", report)
     _make_room(out)
     if is_scenario:
         objective = scenario_objective(
@@ -149,7 +155,9 @@ def tune_command(
     except KeyboardInterrupt:
         errors.print(f"\nThe trials are in {address}; the same command goes on.", soft_wrap=True)
         raise
-    files = write_tuning(tuning, out)
+    files: tuple[Path, ...] = write_tuning(tuning, out)
+    if report is not None:
+        files = (*files, tuning_page(tuning, command=command_line()).write(report))
     if as_json:
         from tracker.evaluation.tuning_result import tuning_as_dict
 

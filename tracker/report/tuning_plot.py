@@ -18,7 +18,7 @@ _SLICES = 8
 
 
 def draw_tuning(tuning: Tuning, path: str | Path) -> None:
-    """Draw the search, its verdict, and the figure along the parameters that matter most.
+    """Draw a search into a file.
 
     Args:
         tuning: What was found.
@@ -27,6 +27,11 @@ def draw_tuning(tuning: Tuning, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
+    tuning_figure(tuning).savefig(path, format="png")
+
+
+def tuning_figure(tuning: Tuning) -> Figure:
+    """The search, its verdict, and the figure along the parameters that matter most."""
     names = sorted(tuning.names, key=lambda name: -tuning.importance.get(name, 0.0))[:_SLICES]
     rows = -(-len(names) // 4)
     figure = Figure(figsize=(11.0, 3.6 + 2.3 * rows), dpi=150, facecolor=PAPER)
@@ -42,7 +47,7 @@ def draw_tuning(tuning: Tuning, path: str | Path) -> None:
         if place % 4 == 0:
             axes.set_ylabel(tuning.figure, fontsize=8)
     figure.suptitle(f"{tuning.source}: {tuning.trials} trials", color=INK)
-    figure.savefig(path, format="png")
+    return figure
 
 
 def _draw_history(axes: Axes, tuning: Tuning) -> None:

@@ -34,12 +34,26 @@ def test_alone_it_lists_scenarios_and_parameters(run):
 
 
 def test_it_writes_the_winner_as_a_file_that_loads(run, tmp_path):
-    words = ("--params", "range_std_m,life", *QUICK, "-n", 2, "-p", "motion:=cv", "--json")
+    words = (
+        "--params",
+        "range_std_m,life",
+        *QUICK,
+        "-n",
+        2,
+        "-p",
+        "motion:=cv",
+        "--json",
+        "--report",
+        "page.html",
+    )
     status, output, _ = run("tune", "people", *words)
     assert status == 0
     found = json.loads(output)
     assert found["trials"] == 2
     assert found == json.loads((tmp_path / "tuning/tuning.json").read_text())
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "Tuned on people" in page
+    assert "range_std_m" in page
     best, default = Config.from_yaml(tmp_path / "tuning/best.yaml"), Config()
     changed = {name for name, value in best if value != getattr(default, name)}
     assert best.motion == "cv"
