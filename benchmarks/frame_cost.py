@@ -3,10 +3,13 @@
     python benchmarks/frame_cost.py [--people 1 5 20 100 500] [--seconds 12]
 
 Everybody is tracked and measured in every frame, far enough apart that no tracker has to guess.
-Contenders take turns, a frame each, so that other work on the machine slows all alike; medians.
+Contenders take turns, a frame each and in a new order each time, so that other work on the machine
+and memory that the one before has left cold slow all alike; medians. The product's frames are
+compiled where numba is installed, and compared with those that are not.
 
   plain       product: constant velocity, Hungarian, Gaussian ranges
   default     product: every default (stand-or-walk IMM, heavy-tailed ranges, occlusion, existence)
+  no numba    the same defaults, by NumPy alone
   filterpy    one KalmanFilter per person, predict + update, measurements already assigned
   norfair, motpy, Stone Soup (2-D assignment): as their documentation sets them up
 
@@ -36,11 +39,11 @@ STONE_SOUP_MOST = 100
 Step = Callable[[int, np.ndarray], None]
 
 
-def product(**parameters: object) -> Callable[[int], Step]:
+def product(compiled: bool = True, **parameters: object) -> Callable[[int], Step]:
     """The product, with some parameters."""
 
     def make(people: int) -> Step:
-        tracker = PersonTracker(Config().replace(**parameters))
+        tracker = PersonTracker(Config().replace(**parameters), compiled=compiled)
         view = View(np.zeros(3), 2 * np.pi) if not parameters else None
 
         def step(frame: int, xy: np.ndarray) -> None:
@@ -118,6 +121,7 @@ def stone_soup(people: int) -> Step:
 CONTENDERS: dict[str, Callable[[int], Step]] = {
     "plain": product(motion="cv", association="hungarian", outlier_dof=0.0),
     "default": product(),
+    "no numba": product(compiled=False),
     "filterpy": filterpy,
     "norfair": norfair,
     "motpy": motpy,
@@ -151,9 +155,9 @@ def medians_us(people: int, seconds: float) -> dict[str, float]:
     while frame < 8 or (time.perf_counter() - begin_s < seconds and frame < 400):
         at = at + rng.normal(0.0, 0.01, at.shape)
         measured = at + rng.normal(0.0, STD_M, at.shape)
-        for name, step in steps.items():
+        for name in rng.permutation(list(steps)):
             start = time.perf_counter()
-            step(frame, measured)
+            steps[name](frame, measured)
             spent[name].append(time.perf_counter() - start)
         frame += 1
     # The first frames confirm everybody; they cost something else.
