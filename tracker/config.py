@@ -216,9 +216,9 @@ class Config(BaseModel):
     pose_opinion: Literal["none", "veto", "full"] = _parameter(
         "veto", "`detector: hands`: what body poses say about the hands. none: they are not "
         "asked; veto: the owner of a hand that `raise_rule: palm` calls raised is looked for, one "
-        "at their head or before the body is not up, and the LiDAR is asked about the torso; "
-        "full: the whole picture is watched, and an arm that is up is a raised hand, too, where "
-        "no hand was found.",
+        "at their head or before the body is not up; full: the whole picture is watched, an arm "
+        "that is up is a raised hand, too, where no hand was found, and the LiDAR is asked about "
+        "the torso.",
         group="pose",
     )  # fmt: skip
     pose_search_period: int = _parameter(

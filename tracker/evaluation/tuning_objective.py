@@ -169,7 +169,7 @@ class RecordingObjective:
             raise ConfigError(
                 f"This recording says nothing about {', '.join(blind)}: what it foretells does "
                 "not depend on the life of tracks; stated noise can be changed afterwards under "
-                "`ranging: person` only, and that of hands without `pose_opinion` only. Choose "
+                "`ranging: person` only, and that of hands without poses only. Choose "
                 "others, or tune on a scenario."
             )
 
@@ -184,7 +184,7 @@ class RecordingObjective:
         """Stated noise that can be told anew; which hands had a pose is not kept."""
         if self.told.ranging != "person":
             return ()
-        poses = self.told.detector == "pose" or self.told.pose_opinion != "none"
+        poses = self.told.detector == "pose" or self.told.pose_opinion == "full"
         return ("range_std_m",) if poses else STATED
 
     @property

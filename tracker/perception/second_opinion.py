@@ -93,20 +93,21 @@ def weigh_opinions(
         config: `pose_opinion` and what it needs.
 
     Returns:
-        The same hands, those at their owner's head or below the shoulders not raised, with the
-        owners' torsos; with
-        `pose_opinion: full` after them a schematic hand for each arm that is up in this very
-        image and has none.
+        The same hands, those at their owner's head or below the shoulders not raised. With
+        `pose_opinion: full` they have their owners' torsos, and after them comes a schematic hand
+        for each arm that is up in this very image and has none. A look at one hand alone, as with
+        `veto`, may take a neighbor for its owner, and where the hand is shall not hang on that.
     """
     bodies = bodies[bodies.age_s <= _BODY_MAX_AGE_S]
     owner = find_owners(hands, bodies)
-    torso = np.full((len(hands), 2), np.nan)
-    torso[owner >= 0] = bodies.torso_px[owner[owner >= 0]]
     refused = hands_at_head(hands, bodies, owner, config.hand_head_clearance)
     refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
-    hands = replace(hands, raised=hands.raised & ~refused, torso_px=torso)
+    hands = replace(hands, raised=hands.raised & ~refused)
     if config.pose_opinion != "full":
         return hands
+    torso = np.full((len(hands), 2), np.nan)
+    torso[owner >= 0] = bodies.torso_px[owner[owner >= 0]]
+    hands = replace(hands, torso_px=torso)
     raised, _ = judge_arms(bodies, config)
     arms = raised & arms_without_hand(hands, bodies) & (bodies.age_s == 0.0)[:, None]
     return Hands.concatenate(hands, draw_hands(bodies, arms, image_size, config))
