@@ -54,6 +54,8 @@ def _headlines(tuning: Tuning) -> Facts:
 
 def _in_words(tuning: Tuning) -> str:
     _, low, high = tuning.gain
+    if tuning.best == tuning.base:
+        return "Nothing that was tried is better than what was there before."
     if low > 0.0:
         return "Better on parts that the search has never seen, beyond what chance explains."
     if high < 0.0:

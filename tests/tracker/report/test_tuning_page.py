@@ -50,6 +50,11 @@ def test_the_verdict_in_words_goes_by_the_interval(gain, words):
     assert words in tuning_page(tuning(gain)).html()
 
 
+def test_a_search_that_found_nothing_better_says_so():
+    same = replace(tuning(0.0), best=Config())
+    assert "Nothing that was tried is better" in tuning_page(same).html()
+
+
 def test_one_unseen_part_has_no_interval():
     one = tuning(0.2)
     one = replace(one, unseen_base=one.unseen_base[:1], unseen_best=one.unseen_best[:1])
