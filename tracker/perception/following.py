@@ -27,6 +27,7 @@ from tracker.perception.landmarks import Landmarks
 from tracker.perception.movement import Movement
 from tracker.perception.palm_search import Palms, Window
 from tracker.perception.pictures import continues
+from tracker.perception.raise_rules import WRIST
 from tracker.perception.regions import (
     Regions,
     first_of_each,
@@ -45,6 +46,8 @@ SAME_REGION_OVERLAP = 0.5
 SAME_HAND_DISTANCE = 0.05
 #: A hand this many times smaller than another one that covers its middle is a part of it.
 SMALLER_HAND = 1.4
+#: Two hands do not begin at one wrist; so close, in lengths of the longer one, they are one.
+SAME_WRIST_DISTANCE = 0.1
 #: The side of a region, in lengths of the hand.
 SIDE_HANDS = 2.0
 _NOWHERE = np.zeros((0, 4))
@@ -210,6 +213,8 @@ def first_of_each_hand(hands: Landmarks) -> BoolArray:
     distance = np.linalg.norm(apart, axis=-1).mean(axis=-1)
     same = distance < SAME_HAND_DISTANCE * np.minimum(side[:, None], side[None, :])
     same |= _is_inside(hands.points_px, side) | _is_inside(hands.points_px, side).T
+    longer = np.maximum(side[:, None], side[None, :]) / SIDE_HANDS
+    same |= np.linalg.norm(apart[:, :, WRIST], axis=-1) < SAME_WRIST_DISTANCE * longer
     return first_of_each(same, np.argsort(-hands.score, kind="stable").tolist())
 
 

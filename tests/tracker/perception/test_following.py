@@ -296,6 +296,13 @@ def test_fingers_taken_for_a_small_hand_are_the_hand_they_belong_to():
     assert first_of_each_hand(hands).tolist() == [True, False, True]
 
 
+def test_a_hand_read_too_short_from_the_same_wrist_is_the_same_hand():
+    short = (hand_at((100, 100)) - (100, 130)) * 0.75 + (103, 129)  # the wrist stays where it is
+    points = np.stack([hand_at((100, 100)), short])
+    hands = Landmarks(points, np.array([0.9, 0.8]), np.zeros(2))
+    assert first_of_each_hand(hands).tolist() == [True, False]
+
+
 def test_hands_that_clasp_stay_two():
     points = np.stack([hand_at((100, 100)), hand_at((115, 100))])
     hands = Landmarks(points, np.array([0.6, 0.7]), np.zeros(2))
