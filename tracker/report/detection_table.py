@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tracker.errors import RecordingError
 from tracker.evaluation.detection_episode import FRAMES_TO_FIND
 from tracker.evaluation.detection_figures import (
     FalseRate,
@@ -24,6 +23,7 @@ from tracker.evaluation.detection_figures import (
 )
 from tracker.evaluation.detection_study import DetectionStudy
 from tracker.report.detection_plot import draw_detection
+from tracker.report.folder import writing_into
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -94,18 +94,12 @@ def write_detection(study: DetectionStudy, folder: str | Path) -> tuple[Path, ..
     folder = Path(folder)
     names = ("evaluation.json", "episodes.csv", "minutes.csv", "evaluation.png")
     document, episodes, minutes, picture = files = tuple(folder / name for name in names)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with writing_into(folder):
         text = json.dumps(detection_as_dict(study), indent=1) + "\n"
         document.write_text(text, encoding="utf-8")
         _write_episodes(study, episodes)
         _write_minutes(study, minutes)
         draw_detection(study, picture)
-    except OSError as error:
-        raise RecordingError(
-            f"{folder}: cannot be written ({error.strerror}); "
-            "a folder that may be written and has room is needed."
-        ) from error
     return files
 
 

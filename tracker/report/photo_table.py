@@ -7,9 +7,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tracker.errors import RecordingError
 from tracker.evaluation.photo_study import PhotoStudy, Share, photos_as_dict
 from tracker.report.contact_sheet import draw_contact_sheet
+from tracker.report.folder import writing_into
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -53,19 +53,13 @@ def write_photos(study: PhotoStudy, folder: str | Path) -> tuple[Path, ...]:
     names = ("evaluation.json", "photos.csv", "contact_sheet.png")
     document, table, picture = (folder / name for name in names)
     told = photos_as_dict(study)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with writing_into(folder):
         document.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
         with table.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, list(told["photos"][0]), lineterminator="\n")
             writer.writeheader()
             writer.writerows(told["photos"])
         is_drawn = draw_contact_sheet(study, picture)
-    except OSError as error:
-        raise RecordingError(
-            f"{folder}: cannot be written ({error.strerror}); "
-            "a folder that may be written and has room is needed."
-        ) from error
     return (document, table, picture) if is_drawn else (document, table)
 
 

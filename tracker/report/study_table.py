@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tracker.errors import RecordingError
 from tracker.evaluation.study import Figure, Study, study_as_dict
+from tracker.report.folder import writing_into
 from tracker.report.study_plot import draw_study
 
 if TYPE_CHECKING:
@@ -50,7 +48,7 @@ def write_study(study: Study, folder: str | Path) -> tuple[Path, ...]:
         RecordingError: A file cannot be written.
     """
     document, picture = Path(folder) / "study.json", Path(folder) / "study.png"
-    with _writing(folder):
+    with writing_into(folder):
         text = json.dumps(study_as_dict(study), indent=1) + "\n"
         document.write_text(text, encoding="utf-8")
         draw_study(study, picture)
@@ -74,22 +72,10 @@ def write_parquet(study: Study, folder: str | Path) -> Path:
     from pyarrow import parquet
 
     path = Path(folder) / "trials.parquet"
-    with _writing(folder):
+    with writing_into(folder):
         trials = pyarrow.array(np.arange(study.trials))
         parquet.write_table(pyarrow.table({"trial": trials, **study.rows}), path)
     return path
-
-
-@contextmanager
-def _writing(folder: str | Path) -> Iterator[None]:
-    try:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        yield
-    except OSError as error:
-        raise RecordingError(
-            f"{folder}: cannot be written ({error.strerror}); "
-            "a folder that may be written and has room is needed."
-        ) from error
 
 
 def _interval(figure: Figure) -> str:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tracker.config_file import parameter_yaml
-from tracker.errors import RecordingError
 from tracker.evaluation.tuning_result import Tuning, tuning_as_dict
+from tracker.report.folder import writing_into
 from tracker.report.tuning_plot import draw_tuning
 
 if TYPE_CHECKING:
@@ -69,17 +69,11 @@ def write_tuning(tuning: Tuning, folder: str | Path) -> tuple[Path, ...]:
         folder / name for name in ("best.yaml", "tuning.json", "tuning.png")
     )
     title = f"Tuned on {tuning.source}: trial {tuning.best_trial} of {tuning.trials}."
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with writing_into(folder):
         best.write_text(parameter_yaml(tuning.best, title), encoding="utf-8")
         text = json.dumps(tuning_as_dict(tuning), indent=1) + "\n"
         document.write_text(text, encoding="utf-8")
         draw_tuning(tuning, picture)
-    except OSError as error:
-        raise RecordingError(
-            f"{folder}: cannot be written ({error.strerror}); "
-            "a folder that may be written and has room is needed."
-        ) from error
     return best, document, picture
 
 
