@@ -11,8 +11,10 @@ import signal
 from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from contextlib import suppress
 from itertools import islice
-from multiprocessing import get_context, parent_process
+from multiprocessing import Pipe, get_context
+from multiprocessing.connection import Connection
 from threading import Thread
 from typing import Any, TypeVar
 
@@ -78,12 +80,17 @@ def run_in_order(
 class Processes(Executor):
     """Processes of this machine; in place of a pool that broke, the next call opens a new one.
 
+    Each process is on a leash, a pipe whose other end is held here: at a tug, or when the end is
+    let go because this process dies, they leave at once. The pool's own farewell could wait
+    forever for a process that stands behind a lock which a killed one has taken with it.
+
     Args:
         count: How many.
     """
 
     def __init__(self, count: int) -> None:
         self._count = count
+        self._worker_end, self._leash = Pipe()
         self._pool = self._open()
 
     def submit(self, call: Callable[..., Any], /, *args: Any, **words: Any) -> Future[Any]:
@@ -95,12 +102,21 @@ class Processes(Executor):
             return self._pool.submit(call, *args, **words)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
-        """Let the processes go; by default, what they have not begun is not wanted any more."""
-        self._pool.shutdown(wait, cancel_futures=cancel_futures)
+        """Let the processes go; by default, what they have not finished is not wanted any more."""
+        self._pool.shutdown(wait and not cancel_futures, cancel_futures=cancel_futures)
+        if cancel_futures and not self._leash.closed:
+            self._worker_end.close()
+            with self._leash as leash, suppress(EOFError, OSError):
+                leash.send("leave")
+                if wait:
+                    leash.recv()  # ends when the last process is gone, which closes the pipe
 
     def _open(self) -> ProcessPoolExecutor:
         return ProcessPoolExecutor(
-            self._count, mp_context=get_context("spawn"), initializer=_leave_in_time
+            self._count,
+            mp_context=get_context("spawn"),
+            initializer=_leave_in_time,
+            initargs=(self._worker_end,),
         )
 
 
@@ -108,14 +124,13 @@ def _is_broken(future: Future[Any]) -> bool:
     return future.done() and isinstance(future.exception(), BrokenExecutor)
 
 
-def _leave_in_time() -> None:
-    """A process of the pool leaves at Ctrl-C without a word, and never outlives its parent."""
+def _leave_in_time(leash: Connection) -> None:
+    """A process of the pool leaves at Ctrl-C without a word, and at a tug on its leash."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    Thread(target=_leave_with_parent, daemon=True).start()
+    Thread(target=_leave_with, args=(leash,), daemon=True).start()
 
 
-def _leave_with_parent() -> None:
-    parent = parent_process()
-    assert parent is not None
-    parent.join()  # a parent that was killed could not say goodbye
+def _leave_with(leash: Connection) -> None:
+    with suppress(OSError):
+        leash.poll(None)  # what was sent is left there, for the others to see
     os._exit(1)

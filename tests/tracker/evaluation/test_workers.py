@@ -107,6 +107,21 @@ def once_at(share, act):
     return progress
 
 
+def runs(pid):
+    return Path(f"/proc/{pid}/exe").exists()
+
+
+@pytest.mark.slow
+def test_processes_are_left_in_time_though_an_idle_one_was_killed():
+    """It may die with the lock of the pool's queue, for which the others wait."""
+    for number in range(4):
+        with Processes(2) as executor:
+            list(executor.map(time.sleep, [0.1, 0.1]))
+            workers = multiprocessing.active_children()
+            os.kill(workers[number % 2].pid, signal.SIGKILL)
+        assert not any(runs(worker.pid) for worker in workers)
+
+
 @pytest.mark.slow
 def test_a_killed_process_changes_no_row(alone):
     def kill_one():
@@ -146,7 +161,7 @@ def test_a_study_killed_with_kill_9_leaves_nobody_behind_and_goes_on(tmp_path):
         [sys.executable, "study.py"], cwd=tmp_path, env=environment, stdout=subprocess.PIPE
     )
     with study.stdout:
-        workers = study.stdout.readline().split()
+        workers = study.stdout.readline().decode().split()
         study.kill()
     study.wait()
     rows = tmp_path / "study" / "trials.csv"
@@ -156,7 +171,7 @@ def test_a_study_killed_with_kill_9_leaves_nobody_behind_and_goes_on(tmp_path):
     assert rows.read_bytes() == (tmp_path / "whole" / "trials.csv").read_bytes()
     assert rows.read_bytes().startswith(written)
     assert len(workers) == 2
-    assert not any(Path(f"/proc/{int(pid)}/exe").exists() for pid in workers)
+    assert not any(runs(pid) for pid in workers)
 
 
 @pytest.fixture(scope="module")
