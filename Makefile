@@ -16,6 +16,9 @@ INSTALL := PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --disable-
 # that fail are run once more.
 REAL_TIME := -m "slow and not soak" -rs
 
+# Whoever waits longer, in seconds, waits forever: it fails, and shows where.
+PYTEST := $(BIN)/python -m pytest --timeout 300
+
 .PHONY: help demo test soak lint docs bench notebooks config setup
 .DEFAULT_GOAL := help
 
@@ -28,9 +31,9 @@ demo: $(VENV)/.installed  ## simulate a restaurant, replay it, print who raised 
 test: $(VENV)/.installed-$(TESTED)  ## run the tests
 	@# Compiled once beforehand, for all the processes that follow.
 	$(BIN)/python -c 'import tracker; tracker.PersonTracker()'
-	$(BIN)/python -m pytest -n auto --maxprocesses 2 -m "not slow" $(if $(NUMPY),--ignore=tests/notebooks)
+	$(PYTEST) -n auto --maxprocesses 2 -m "not slow" $(if $(NUMPY),--ignore=tests/notebooks)
 ifeq ($(NUMPY),)
-	$(BIN)/python -m pytest $(REAL_TIME) || $(BIN)/python -m pytest $(REAL_TIME) --last-failed
+	$(PYTEST) $(REAL_TIME) || $(PYTEST) $(REAL_TIME) --last-failed
 endif
 
 soak: $(VENV)/.installed-$(TESTED)  ## an hour of simulated time through the node: about eight minutes
