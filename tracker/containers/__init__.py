@@ -1,0 +1,36 @@
+"""What travels through the rooms: one typed, frozen container per concept.
+
+Row i of every array of a batch is the same thing (the same hand, measurement, person). Arrays are
+made read-only, stamps are integer nanoseconds, frames and units stand in the names.
+"""
+
+from tracker.containers.arrays import (
+    BoolArray,
+    FloatArray,
+    ImageArray,
+    IntArray,
+    check_stamp,
+)
+from tracker.containers.hands import Hands
+from tracker.containers.measurements import MeasurementModel, Measurements
+from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
+from tracker.containers.sensors import CameraImage, Scan
+from tracker.containers.tracks import Tracks
+
+__all__ = [
+    "BoolArray",
+    "CameraImage",
+    "FloatArray",
+    "FrameResult",
+    "Hands",
+    "ImageArray",
+    "IntArray",
+    "MeasurementModel",
+    "Measurements",
+    "PerceptionWork",
+    "Pose",
+    "Scan",
+    "Tracks",
+    "Truth",
+    "check_stamp",
+]

@@ -1,0 +1,92 @@
+"""How are batches of arrays kept: of one type, of one length, and read-only?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracker.errors import ClockError, ShapeError
+
+FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
+BoolArray: TypeAlias = NDArray[np.bool_]
+ImageArray: TypeAlias = NDArray[np.uint8]
+NUMBERS, COUNTS, FLAGS = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.bool_)
+#: What stands in each row of a batch's arrays: the type of the numbers and the shape.
+Layout: TypeAlias = Mapping[str, tuple["np.dtype[Any]", tuple[int, ...]]]
+_Batch = TypeVar("_Batch")
+
+
+def check_stamp(stamp_ns: int) -> None:
+    """Refuse what is no stamp.
+
+    Raises:
+        ClockError: Negative, or not an integer.
+    """
+    if not isinstance(stamp_ns, (int, np.integer)) or stamp_ns < 0:
+        raise ClockError(
+            f"A stamp of {stamp_ns!r} ns came; stamps are integer nanoseconds from 0 on."
+        )
+
+
+def frozen(value: ArrayLike, dtype: np.dtype[Any] = NUMBERS) -> NDArray[Any]:
+    """The same numbers, read-only; whoever holds the array may go on writing to it."""
+    if type(value) is np.ndarray and value.dtype == dtype and not value.flags.writeable:
+        return value
+    view: NDArray[Any] = np.asarray(value, dtype=dtype).view()
+    view.flags.writeable = False
+    return view
+
+
+def check_rows(batch: Any, count: int, layout: Layout) -> None:
+    """Make a batch's arrays read-only and see to it that each has as many rows.
+
+    Raises:
+        ShapeError: An array has other rows than the layout says, or another number of them.
+    """
+    fits = True
+    for name, (dtype, row) in layout.items():
+        given = getattr(batch, name)
+        array = frozen(given, dtype)
+        if array is not given:
+            object.__setattr__(batch, name, array)
+        fits = fits and array.shape == (count, *row)
+    if not fits:
+        shapes = ", ".join(f"{name} {getattr(batch, name).shape}" for name in layout)
+        raise ShapeError(f"{type(batch).__name__} disagree in shape: {shapes}.")
+
+
+def select(batch: _Batch, rows: Any) -> _Batch:
+    """The same batch with some rows alone; one number gives a batch of one."""
+    if isinstance(rows, (int, np.integer)):
+        rows = [rows]
+    values = {name: getattr(batch, name) for name in batch.__dataclass_fields__}  # type: ignore[attr-defined]
+    chosen = {name: each[rows] for name, each in values.items() if isinstance(each, np.ndarray)}
+    return replace(batch, **chosen)  # type: ignore[type-var]
+
+
+@lru_cache(maxsize=64)
+def constant(value: float, shape: tuple[int, ...], dtype: np.dtype[Any] = NUMBERS) -> NDArray[Any]:
+    """An array that is the same everywhere, shared by all who ask for it."""
+    array = np.full(shape, value, dtype)
+    array.flags.writeable = False
+    return array
+
+
+def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
+    """Write numbers into an array that has its shape already.
+
+    Raises:
+        ShapeError: They have another shape, and are not one for all either.
+    """
+    try:
+        column[...] = value
+    except ValueError as error:
+        raise ShapeError(
+            f"`{name}` has shape {np.shape(value)}; needed is {column.shape}."
+        ) from error

@@ -1,0 +1,87 @@
+"""Which hands are in one image?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from tracker.containers.arrays import FLAGS, NUMBERS, BoolArray, FloatArray, check_rows, select
+
+_LAYOUT = {
+    "landmarks_px": (NUMBERS, (21, 2)),
+    "score": (NUMBERS, ()),
+    "right": (NUMBERS, ()),
+    "raised": (FLAGS, ()),
+    "raise_measure": (NUMBERS, ()),
+    "torso_px": (NUMBERS, (2,)),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hands:
+    """Every hand found in one image; row i of each array is the same hand.
+
+    Attributes:
+        landmarks_px: Shape (H, 21, 2): x to the right, y down, in pixels of the full image, in
+            MediaPipe's order (0 wrist, 4 thumb tip, 9 middle finger's root, 12 its tip, 20 pinky
+            tip).
+        score: Shape (H,): the landmark model's word that this is a hand, in [0, 1].
+        right: Shape (H,): probability of a right hand, in [0, 1].
+        raised: Shape (H,), bool: the raise rule's verdict on this one image.
+        raise_measure: Shape (H,): what the rule compared with its threshold (image heights for the
+            `image` rule, palm lengths for the `palm` rule).
+        torso_px: Shape (H, 2): the middle of shoulders and hips of whose hand it is; NaN where
+            that is not known. None means that of no hand.
+    """
+
+    landmarks_px: FloatArray
+    score: FloatArray
+    right: FloatArray
+    raised: BoolArray
+    raise_measure: FloatArray
+    torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
+
+    def __post_init__(self) -> None:
+        if self.torso_px is None:
+            object.__setattr__(self, "torso_px", np.full((len(self.landmarks_px), 2), np.nan))
+        check_rows(self, len(self.landmarks_px), _LAYOUT)
+
+    def __len__(self) -> int:
+        return len(self.score)
+
+    def __getitem__(self, rows: Any) -> Hands:
+        return select(self, rows)
+
+    @staticmethod
+    def none() -> Hands:
+        """No hand at all."""
+        nothing = np.zeros(0)
+        return Hands(np.zeros((0, 21, 2)), nothing, nothing, nothing.astype(bool), nothing)
+
+    @staticmethod
+    def concatenate(*parts: Hands) -> Hands:
+        """Join batches of one image, rows in the order given."""
+        return Hands(
+            **{
+                item.name: np.concatenate([getattr(part, item.name) for part in parts])
+                for item in fields(Hands)
+            }
+        )
+
+    @property
+    def wrist_px(self) -> FloatArray:
+        """Shape (H, 2)."""
+        return self.landmarks_px[:, 0]
+
+    @property
+    def is_owned(self) -> BoolArray:
+        """Shape (H,): the torso of whose hand it is is known."""
+        return np.asarray(np.isfinite(self.torso_px).all(axis=-1))
+
+    @property
+    def length_px(self) -> FloatArray:
+        """Shape (H,): from the wrist to the middle finger's tip."""
+        along = self.landmarks_px[:, 12] - self.landmarks_px[:, 0]
+        return np.hypot(along[:, 0], along[:, 1])

@@ -1,0 +1,224 @@
+"""What do the sensors claim about people?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracker.containers.arrays import (
+    COUNTS,
+    FLAGS,
+    NUMBERS,
+    BoolArray,
+    FloatArray,
+    IntArray,
+    check_rows,
+    constant,
+    fill,
+    select,
+)
+from tracker.errors import ShapeError
+
+_LAYOUT = {
+    "values": (NUMBERS, (2,)),
+    "covariance": (NUMBERS, (2, 2)),
+    "model": (COUNTS, ()),
+    "sensor_pose": (NUMBERS, (3,)),
+    "raised": (FLAGS, ()),
+    "person": (COUNTS, ()),
+    "hand": (COUNTS, ()),
+    "sensor_pose_covariance": (NUMBERS, (3, 3)),
+}
+
+
+class MeasurementModel(IntEnum):
+    """How a measurement's two numbers are read."""
+
+    POLAR = 0
+    CARTESIAN = 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measurements:
+    """What the sensors claim about people at one instant; row i of each array is one claim.
+
+    Attributes:
+        values: Shape (M, 2). Polar: bearing_rad (counter-clockwise in the sensor's frame) and
+            range_m, where a NaN range means "bearing only". Cartesian: x_m, y_m in the fixed
+            frame.
+        covariance: Shape (M, 2, 2), in the units of `values`.
+        model: Shape (M,), `MeasurementModel`.
+        sensor_pose: Shape (M, 3): x_m, y_m, yaw_rad of the sensor in the fixed frame.
+        raised: Shape (M,), bool: a raised hand is behind it. Only such measurements create
+            customers and feed the streaks; others (lowered hands, person clusters of the scan)
+            sustain and refine customers that exist.
+        person: Shape (M,), int64: claims that share a non-negative number come from the same body
+            (the same scan segment); -1 where nobody knows.
+        hand: Shape (M,), int64: row of the image's `Hands`, or -1.
+        sensor_pose_covariance: Shape (M, 3, 3), of `sensor_pose`; None means zeros (well known).
+        appearance: Shape (M, D): histograms of what the person looks like (the clothes), each
+            adding up to 1; rows of NaN or zeros are unknown. None where nobody looked.
+    """
+
+    values: FloatArray
+    covariance: FloatArray
+    model: IntArray
+    sensor_pose: FloatArray
+    raised: BoolArray
+    person: IntArray
+    hand: IntArray
+    sensor_pose_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
+    appearance: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        count = len(self.values)
+        if self.sensor_pose_covariance is None:
+            object.__setattr__(self, "sensor_pose_covariance", constant(0.0, (count, 3, 3)))
+        check_rows(self, count, _LAYOUT)
+        if self.appearance is not None:
+            length = np.shape(self.appearance)[1:2] or (0,)  # of any length
+            check_rows(self, count, {"appearance": (NUMBERS, length)})
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, rows: Any) -> Measurements:
+        return select(self, rows)
+
+    @staticmethod
+    def none() -> Measurements:
+        """No measurement at all."""
+        return Measurements.cartesian(np.zeros((0, 2)), np.zeros((0, 2, 2)))
+
+    @staticmethod
+    def polar(
+        bearing_rad: ArrayLike,
+        range_m: ArrayLike,
+        bearing_std_rad: ArrayLike,
+        range_std_m: ArrayLike,
+        sensor_pose: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        raised: ArrayLike = True,
+        person: ArrayLike = -1,
+        hand: ArrayLike = -1,
+        appearance: ArrayLike | None = None,
+    ) -> Measurements:
+        """Bearings and ranges seen from a sensor.
+
+        Args:
+            bearing_rad: Shape (M,), counter-clockwise from the sensor's x axis.
+            range_m: Shape (M,) or one number; NaN where only the bearing is known.
+            bearing_std_rad: Shape (M,) or one number.
+            range_std_m: Shape (M,) or one number; ignored where the range is NaN.
+            sensor_pose: x_m, y_m, yaw_rad of the sensor in the fixed frame, shape (3,) or (M, 3).
+            raised: Shape (M,) or one truth value.
+            person: Shape (M,) or one number; see the class.
+            hand: Shape (M,) or one number; see the class.
+            appearance: Shape (M, D), or None; see the class.
+
+        Raises:
+            ShapeError: The arrays disagree in length.
+        """
+        bearing = np.asarray(bearing_rad, dtype=np.float64)
+        count = bearing.size
+        values, covariance = np.empty((count, 2)), np.zeros((count, 2, 2))
+        fill("bearing_rad", values[:, 0], bearing)
+        fill("range_m", values[:, 1], range_m)
+        fill("bearing_std_rad", covariance[:, 0, 0], np.square(bearing_std_rad))
+        fill("range_std_m", covariance[:, 1, 1], np.square(range_std_m))
+        np.copyto(covariance[:, 1, 1], 1.0, where=np.isnan(values[:, 1]))
+        pose = np.empty((count, 3))
+        fill("sensor_pose", pose, sensor_pose)
+        return Measurements(
+            values=values,
+            covariance=covariance,
+            model=constant(MeasurementModel.POLAR, (count,), COUNTS),
+            sensor_pose=pose,
+            raised=_column("raised", raised, count, FLAGS),
+            person=_column("person", person, count, COUNTS),
+            hand=_column("hand", hand, count, COUNTS),
+            appearance=None if appearance is None else np.asarray(appearance, np.float64),
+        )
+
+    @staticmethod
+    def cartesian(
+        xy_m: ArrayLike,
+        covariance: ArrayLike,
+        *,
+        raised: ArrayLike = True,
+        person: ArrayLike = -1,
+        hand: ArrayLike = -1,
+        appearance: ArrayLike | None = None,
+    ) -> Measurements:
+        """Positions in the fixed frame.
+
+        Args:
+            xy_m: Shape (M, 2).
+            covariance: Shape (2, 2) or (M, 2, 2), in square meters.
+            raised: Shape (M,) or one truth value.
+            person: Shape (M,) or one number; see the class.
+            hand: Shape (M,) or one number; see the class.
+            appearance: Shape (M, D), or None; see the class.
+
+        Raises:
+            ShapeError: The arrays disagree in length.
+        """
+        xy = np.asarray(xy_m, dtype=np.float64)
+        xy = xy[None, :] if xy.ndim == 1 else xy
+        count = len(xy)
+        spread = np.empty((count, 2, 2))
+        fill("covariance", spread, covariance)
+        return Measurements(
+            values=xy,
+            covariance=spread,
+            model=constant(MeasurementModel.CARTESIAN, (count,), COUNTS),
+            sensor_pose=constant(0.0, (count, 3)),
+            raised=_column("raised", raised, count, FLAGS),
+            person=_column("person", person, count, COUNTS),
+            hand=_column("hand", hand, count, COUNTS),
+            appearance=None if appearance is None else np.asarray(appearance, np.float64),
+        )
+
+    @staticmethod
+    def concatenate(*parts: Measurements) -> Measurements:
+        """Join batches of one instant, rows in the order given.
+
+        Raises:
+            ShapeError: Their histograms of appearance differ in length.
+        """
+        joined = {
+            item.name: np.concatenate([getattr(part, item.name) for part in parts])
+            for item in fields(Measurements)
+            if item.name != "appearance"
+        }
+        return Measurements(**joined, appearance=_joined_appearance(parts))
+
+
+def _column(name: str, value: ArrayLike, count: int, dtype: np.dtype[Any]) -> NDArray[Any]:
+    if isinstance(value, (bool, int)):
+        return constant(value, (count,), dtype)
+    column = np.empty(count, dtype)
+    fill(name, column, value)
+    return column
+
+
+def _joined_appearance(parts: tuple[Measurements, ...]) -> FloatArray | None:
+    """Rows of NaN for parts without appearance."""
+    lengths = {part.appearance.shape[1] for part in parts if part.appearance is not None}
+    if not lengths:
+        return None
+    if len(lengths) > 1:
+        raise ShapeError(
+            f"Histograms of appearance have {sorted(lengths)} numbers; joined, all need as many."
+        )
+    unknown = np.full((1, *lengths), np.nan)
+    return np.concatenate(
+        [
+            unknown.repeat(len(part), axis=0) if part.appearance is None else part.appearance
+            for part in parts
+        ]
+    )

@@ -1,0 +1,104 @@
+"""What do the sensors send? One picture of the camera, one turn of the LiDAR."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracker.containers.arrays import BoolArray, FloatArray, ImageArray, check_stamp, frozen
+from tracker.errors import ShapeError
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraImage:
+    """One picture of the camera.
+
+    Attributes:
+        stamp_ns: When it was taken.
+        frame_id: The camera's frame; empty means the configured one.
+        bgr: Shape (height, width, 3), uint8, blue-green-red.
+
+    Raises:
+        ShapeError: The array is no BGR picture, or has no pixels.
+        ClockError: The stamp is negative.
+    """
+
+    stamp_ns: int
+    frame_id: str
+    bgr: ImageArray
+
+    def __post_init__(self) -> None:
+        check_stamp(self.stamp_ns)
+        shape = self.bgr.shape
+        if len(shape) != 3 or shape[2] != 3 or 0 in shape or self.bgr.dtype != np.uint8:
+            raise ShapeError(
+                f"An image has shape {shape} and type {self.bgr.dtype}; "
+                "needed are (height, width, 3) with pixels in it and uint8."
+            )
+
+    @property
+    def height(self) -> int:
+        """Rows of pixels."""
+        return int(self.bgr.shape[0])
+
+    @property
+    def width(self) -> int:
+        """Columns of pixels."""
+        return int(self.bgr.shape[1])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scan:
+    """One turn of a planar LiDAR.
+
+    Attributes:
+        stamp_ns: When the first beam was measured.
+        frame_id: The laser's frame; empty means it coincides with the camera's body frame.
+        angle_min_rad: Direction of beam 0, counter-clockwise from the frame's x axis.
+        angle_increment_rad: From one beam to the next; negative for scanners that turn clockwise.
+        range_min_m: Nearest range that counts.
+        range_max_m: Farthest range that counts.
+        ranges_m: Shape (B,); NaN, infinite and out-of-range values mean "no return".
+
+    Raises:
+        ShapeError: `ranges_m` is not one-dimensional, or the increment is zero or not finite.
+        ClockError: The stamp is negative.
+    """
+
+    stamp_ns: int
+    frame_id: str
+    angle_min_rad: float
+    angle_increment_rad: float
+    range_min_m: float
+    range_max_m: float
+    ranges_m: FloatArray
+
+    def __post_init__(self) -> None:
+        check_stamp(self.stamp_ns)
+        object.__setattr__(self, "ranges_m", frozen(self.ranges_m))
+        if self.ranges_m.ndim != 1:
+            raise ShapeError(f"Scan ranges have shape {self.ranges_m.shape}; needed is (B,).")
+        if not np.isfinite(self.angle_min_rad):
+            raise ShapeError(
+                f"A scan starts at {self.angle_min_rad} rad; a finite angle is needed."
+            )
+        if len(self.ranges_m) and (
+            self.angle_increment_rad == 0.0 or not np.isfinite(self.angle_increment_rad)
+        ):
+            raise ShapeError(
+                f"A scan of {len(self.ranges_m)} beams has an angle increment of "
+                f"{self.angle_increment_rad} rad; it must be finite and not zero."
+            )
+
+    @property
+    def valid(self) -> BoolArray:
+        """Shape (B,): beams with a return inside the scanner's limits."""
+        ranges = self.ranges_m
+        return np.isfinite(ranges) & (ranges >= self.range_min_m) & (ranges <= self.range_max_m)
+
+    @property
+    def angles_rad(self) -> FloatArray:
+        """Shape (B,): direction of each beam in the laser's frame, not normalized."""
+        beams = np.arange(len(self.ranges_m), dtype=np.float64)
+        return self.angle_min_rad + self.angle_increment_rad * beams

@@ -1,0 +1,99 @@
+"""Who is where, and whose hand is up?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tracker.containers.arrays import (
+    COUNTS,
+    FLAGS,
+    NUMBERS,
+    BoolArray,
+    FloatArray,
+    IntArray,
+    check_rows,
+    select,
+)
+
+_LAYOUT = {
+    "id": (COUNTS, ()),
+    "mean": (NUMBERS, (4,)),
+    "covariance": (NUMBERS, (4, 4)),
+    "existence": (NUMBERS, ()),
+    "confirmed": (FLAGS, ()),
+    "raised": (FLAGS, ()),
+    "raised_since_ns": (COUNTS, ()),
+    "age_s": (NUMBERS, ()),
+    "unseen_s": (NUMBERS, ()),
+    "hand": (COUNTS, ()),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tracks:
+    """Every customer at one instant; row i of each array is the same person.
+
+    Attributes:
+        stamp_ns: Sensor time the estimate is valid for.
+        id: Shape (N,), int64, from 1; never reused by one tracker.
+        mean: Shape (N, 4): x_m, y_m, vx_mps, vy_mps in the fixed frame.
+        covariance: Shape (N, 4, 4), in the order and units of `mean`.
+        existence: Shape (N,), probability that this person is really there.
+        confirmed: Shape (N,), bool: seen often enough to be believed.
+        raised: Shape (N,), bool: the streak says that this person's hand is up.
+        raised_since_ns: Shape (N,): stamp at which `raised` last became true; -1 if it never did.
+        age_s: Shape (N,): since the track began.
+        unseen_s: Shape (N,): since a measurement last touched the position (freshness).
+        hand: Shape (N,), int64: row of this image's `Hands` that belongs to the person, or -1.
+        selected_id: The customer who is served, or None.
+    """
+
+    stamp_ns: int
+    id: IntArray
+    mean: FloatArray
+    covariance: FloatArray
+    existence: FloatArray
+    confirmed: BoolArray
+    raised: BoolArray
+    raised_since_ns: IntArray
+    age_s: FloatArray
+    unseen_s: FloatArray
+    hand: IntArray
+    selected_id: int | None = None
+
+    def __post_init__(self) -> None:
+        check_rows(self, len(self.id), _LAYOUT)
+
+    def __len__(self) -> int:
+        return len(self.id)
+
+    def __getitem__(self, rows: Any) -> Tracks:
+        return select(self, rows)
+
+    @staticmethod
+    def none(stamp_ns: int) -> Tracks:
+        """Nobody at all."""
+        numbers, flags, counts = np.zeros(0), np.zeros(0, np.bool_), np.zeros(0, np.int64)
+        return Tracks(
+            stamp_ns=stamp_ns,
+            id=counts,
+            mean=np.zeros((0, 4)),
+            covariance=np.zeros((0, 4, 4)),
+            existence=numbers,
+            confirmed=flags,
+            raised=flags,
+            raised_since_ns=counts,
+            age_s=numbers,
+            unseen_s=numbers,
+            hand=counts,
+        )
+
+    def row_of(self, track_id: int | None) -> int | None:
+        """Row of a person, or None where the tracker does not know them (any more)."""
+        if track_id is None:
+            return None
+        found = np.flatnonzero(self.id == track_id)
+        return int(found[0]) if len(found) else None
