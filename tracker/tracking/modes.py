@@ -27,11 +27,13 @@ class Belief:
         weight: Shape (K, N): probability of each mode, adding up to 1.
         mean: Shape (K, N, 4): x_m, y_m, vx_mps, vy_mps in the fixed frame.
         covariance: Shape (K, N, 4, 4).
+        known: What `merged` returns, where it has been computed already.
     """
 
     weight: FloatArray
     mean: FloatArray
     covariance: FloatArray
+    known: tuple[FloatArray, FloatArray] | None = None
 
     def __getitem__(self, rows: Any) -> Belief:
         return Belief(self.weight[:, rows], self.mean[:, rows], self.covariance[:, rows])
@@ -65,6 +67,8 @@ class Belief:
 
     def merged(self) -> tuple[FloatArray, FloatArray]:
         """The one Gaussian with the same first two moments, (N, 4) and (N, 4, 4)."""
+        if self.known is not None:
+            return self.known
         if len(self.weight) == 1:
             return self.mean[0], self.covariance[0]
         mean, covariance = _mixed(self.weight[:, None], self.mean, self.covariance)

@@ -58,6 +58,11 @@ def transition(dt_s: float) -> FloatArray:
     return matrix
 
 
+def modes_of(config: Config) -> int:
+    """How many modes of motion people have: one, or two where they may stand."""
+    return 2 if config.motion == "imm" else 1
+
+
 def process_noise(dt_s: float, acceleration_density: float) -> FloatArray:
     """Covariance that white-noise acceleration adds over an interval, shape (4, 4).
 

@@ -9,7 +9,7 @@ from tracker.containers import BoolArray
 from tracker.tracking.people import People
 
 #: A track that has been silent for so long, beside a customer who is seen, is that customer.
-_SILENT_S = 0.5
+SILENT_S = 0.5
 
 
 def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
@@ -34,7 +34,7 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
     distance = np.hypot(apart[..., 0], apart[..., 1])
     is_other = np.where(
         people.is_customer[seen],
-        people.missing_s[silent, None] <= _SILENT_S,
+        people.missing_s[silent, None] <= SILENT_S,
         people.born_ns[seen] <= people.seen_ns[silent, None],
     )
     distance[is_other] = np.inf

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel
 from tracker.tracking.admission import (
@@ -12,11 +11,12 @@ from tracker.tracking.admission import (
     VARIANCE_MAX,
     VARIANCE_MIN,
 )
+from tracker.tracking.compiled.loop import loop
 
 _POLAR = int(MeasurementModel.POLAR)
 
 
-@njit(error_model="numpy")
+@loop
 def admit(
     values: FloatArray,
     covariance: FloatArray,
@@ -80,7 +80,7 @@ def admit(
     return raised[:kept], others[:rest]
 
 
-@njit(error_model="numpy")
+@loop
 def _is_usable(values: FloatArray, covariance: FloatArray, model: int, pose: FloatArray) -> bool:
     first, second = covariance[0, 0], covariance[1, 1]
     is_polar = model == _POLAR

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.tracking.compiled.loop import loop
 from tracker.tracking.joint_probability import CHANGE_MIN, LOG_ODDS_MAX, SWEEPS_MAX
 
 
-@njit(error_model="numpy")
+@loop
 def assign_pairs(
     track: IntArray, claim: IntArray, odds: FloatArray, tracks: int, claims: int
 ) -> IntArray:
@@ -61,7 +61,7 @@ def assign_pairs(
     return chosen
 
 
-@njit(error_model="numpy")
+@loop
 def _has_rivals(chosen: IntArray, claim: IntArray, claims: int) -> bool:
     is_taken = np.zeros(claims, np.bool_)
     for pair in chosen:
@@ -72,7 +72,7 @@ def _has_rivals(chosen: IntArray, claim: IntArray, claims: int) -> bool:
     return False
 
 
-@njit(error_model="numpy")
+@loop
 def _clusters(
     track: IntArray, claim: IntArray, odds: FloatArray, tracks: int, claims: int
 ) -> IntArray:
@@ -96,7 +96,7 @@ def _clusters(
     return parent
 
 
-@njit(error_model="numpy")
+@loop
 def assign(gain: FloatArray, row_of: IntArray, is_taken: BoolArray) -> None:
     """Row of the measurement of each person, or -1: at the highest sum of gains."""
     row_of[:], is_taken[:] = -1, False
@@ -113,7 +113,7 @@ def assign(gain: FloatArray, row_of: IntArray, is_taken: BoolArray) -> None:
             row_of[person] = best
 
 
-@njit(error_model="numpy")
+@loop
 def marginals(
     track: IntArray, claim: IntArray, odds: FloatArray, tracks: int, claims: int
 ) -> FloatArray:
@@ -150,7 +150,7 @@ def marginals(
     return told
 
 
-@njit(error_model="numpy")
+@loop
 def assign_disputed(gain: FloatArray) -> IntArray:
     """The Hungarian algorithm, by shortest augmenting paths.
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from tracker.containers import FloatArray, IntArray
+from tracker.tracking.compiled.loop import loop
 from tracker.tracking.compiled.pairing import (
     H00,
     H01,
@@ -23,7 +23,7 @@ from tracker.tracking.filter import NOISE_SHARE_MIN
 from tracker.tracking.posterior import LOG_RATIO_MAX
 
 
-@njit(error_model="numpy")
+@loop
 def update_assigned(
     weight: FloatArray,
     mean: FloatArray,
@@ -45,7 +45,7 @@ def update_assigned(
         _weigh(weight[:, person], likelihood)
 
 
-@njit(error_model="numpy")
+@loop
 def update_jointly(
     weight: FloatArray,
     mean: FloatArray,
@@ -103,7 +103,7 @@ def update_jointly(
         begin = end
 
 
-@njit(error_model="numpy")
+@loop
 def _weigh(weight: FloatArray, log_likelihood: FloatArray) -> None:
     """Bayes' rule on the modes of one track, in place: `modes.weigh_modes`."""
     if len(weight) == 1:
@@ -117,7 +117,7 @@ def _weigh(weight: FloatArray, log_likelihood: FloatArray) -> None:
     weight /= weight.sum()
 
 
-@njit(error_model="numpy")
+@loop
 def _correct(
     mean: FloatArray,
     covariance: FloatArray,

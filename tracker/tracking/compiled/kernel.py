@@ -16,19 +16,27 @@ from tracker.tracking.compiled.life_cycle import (
     decide_who_stays,
     has_twins,
 )
+from tracker.tracking.compiled.loop import loop
 from tracker.tracking.compiled.pairing import find_pairs
 from tracker.tracking.compiled.prediction import merge_modes, predict, visibility
+from tracker.tracking.compiled.renewal import renew
 from tracker.tracking.compiled.settings import Settings, named
 from tracker.tracking.compiled.sources import named_after_sources
-from tracker.tracking.frame import DETECTION_MIN, RAISES_AGAIN
+from tracker.tracking.compiled.state import (
+    EXISTENCE,
+    HAND,
+    ID,
+    MISSED,
+    MISSING_S,
+    State,
+    selected,
+)
+from tracker.tracking.observation import DETECTION_MIN, RAISES_AGAIN
 
 
-@njit(error_model="numpy")
+@loop
 def _update(
-    weight: FloatArray,
-    mean: FloatArray,
-    covariance: FloatArray,
-    existence: FloatArray,
+    state: State,
     rows: IntArray,
     values: FloatArray,
     noise: FloatArray,
@@ -39,7 +47,8 @@ def _update(
     settings: Settings,
 ) -> IntArray:
     """Associate and correct, in place; gives the row of each track's measurement, or -1."""
-    tracks, claims = len(existence), len(rows)
+    weight, mean, covariance = state.weight, state.mean, state.covariance
+    tracks, claims = len(visible), len(rows)
     got = np.full(tracks, -1)
     if tracks == 0 or claims == 0:
         return got
@@ -57,11 +66,26 @@ def _update(
         update_jointly(weight, mean, covariance, track, numbers, probability)
     else:
         update_assigned(weight, mean, covariance, chosen, numbers)
-    believe(existence, chosen, odds, chance)
+    believe(state.spans[EXISTENCE], chosen, odds, chance)
     for person in range(tracks):
         if chosen[person] >= 0:
             got[person] = rows[claim[chosen[person]]]
     return got
+
+
+@loop
+def _left(rows: IntArray, taken: IntArray, claims: int) -> IntArray:
+    """Rows that are nobody's."""
+    is_taken = np.zeros(claims, np.bool_)
+    for row in taken:
+        if row >= 0:
+            is_taken[row] = True
+    left, count = np.empty(len(rows), np.int64), 0
+    for row in rows:
+        if not is_taken[row]:
+            left[count] = row
+            count += 1
+    return left[:count]
 
 
 def _given(kind: types.Type, dimensions: int) -> types.Array:
@@ -71,18 +95,14 @@ def _given(kind: types.Type, dimensions: int) -> types.Array:
 _NUMBER, _WHOLE, _TRUTH = types.float64, types.int64, types.boolean
 #: Said beforehand, so that no array ever leads to another compilation by how it is laid out.
 _SIGNATURE = (
-    *(_given(_NUMBER, dimensions) for dimensions in (2, 3, 4)),  # weight, mean, covariance
-    *(_given(_WHOLE, 1), _given(_WHOLE, 1)),  # id, born_ns
+    *(_given(_NUMBER, dimensions) for dimensions in (2, 3, 4, 2)),  # the state
+    *(_given(_WHOLE, 2), _given(_TRUTH, 2), _given(_TRUTH, 2)),
     *(_given(_NUMBER, 2), _given(_NUMBER, 3), _given(_WHOLE, 1), _given(_NUMBER, 2)),
     *(_given(_TRUTH, 1), _given(_WHOLE, 1), _given(_WHOLE, 1), _given(_NUMBER, 3)),
     _given(_TRUTH, 1),  # may_enter
     *(_given(_NUMBER, 3), _given(_NUMBER, 3), _given(_NUMBER, 2)),  # the motion
     *(_given(_NUMBER, 1), _given(_NUMBER, 1), _TRUTH),  # the views
-    *(_NUMBER, _WHOLE, _NUMBER, _given(_NUMBER, 1)),
-    *(types.Array(_NUMBER, dimensions, "C") for dimensions in (2, 3, 4)),  # what comes out
-    *(types.Array(_NUMBER, 1, "C"), types.Array(_NUMBER, 1, "C")),
-    *(types.Array(_WHOLE, 2, "C"), types.Array(_TRUTH, 2, "C"), types.Array(_TRUTH, 2, "C")),
-    *(types.Array(_WHOLE, 1, "C"), types.Array(_TRUTH, 2, "C"), types.Array(_TRUTH, 1, "C")),
+    *(_WHOLE, _NUMBER, _WHOLE, _NUMBER, _given(_NUMBER, 1)),
 )
 
 
@@ -92,8 +112,10 @@ def track_frame(
     weight: FloatArray,
     mean: FloatArray,
     covariance: FloatArray,
-    id: IntArray,
-    born_ns: IntArray,
+    spans: FloatArray,
+    counts: IntArray,
+    flags: BoolArray,
+    recent: BoolArray,
     values: FloatArray,
     noise: FloatArray,
     model: IntArray,
@@ -109,30 +131,22 @@ def track_frame(
     view: FloatArray,
     scan_view: FloatArray,
     has_scan: bool,
+    next_id: int,
     dt_s: float,
     stamp_ns: int,
     bias: float,
     numbers: FloatArray,
-    weights: FloatArray,
-    means: FloatArray,
-    covariances: FloatArray,
-    existence: FloatArray,
-    missing_s: FloatArray,
-    counts: IntArray,
-    flags: BoolArray,
-    recent: BoolArray,
-    own_hand: IntArray,
-    fate: BoolArray,
-    is_left: BoolArray,
-) -> bool:
-    """Predict, associate, correct, count.
+) -> tuple[State, FloatArray, FloatArray, int]:
+    """Everybody after one instant.
 
     Args:
-        weight: Shape (K, N): of the last frame, as all up to `born_ns`.
+        weight: Shape (K, N): of the last frame, as all of a `State`.
         mean: Shape (K, N, 4).
         covariance: Shape (K, N, 4, 4).
-        id: Shape (N,).
-        born_ns: Shape (N,).
+        spans: Shape (2, N).
+        counts: Shape (9, N).
+        flags: Shape (2, N).
+        recent: Shape (N, W).
         values: Shape (M, 2): the arrays of `Measurements`, up to `doubt`.
         noise: Shape (M, 2, 2).
         model: Shape (M,).
@@ -148,35 +162,30 @@ def track_frame(
         view: Of the camera; see `prediction.visibility`.
         scan_view: Of the scan.
         has_scan: There is a scan.
+        next_id: The next customer's identity.
         dt_s: Since the last frame.
         stamp_ns: Of this frame.
         bias: How many times wider a raised hand's bearing counts, where it is alone.
         numbers: As `settings_of` gives them.
-        weights: Shape (K, N), to be filled in, as the next two.
-        means: Shape (K, N, 4).
-        covariances: Shape (K, N, 4, 4).
-        existence: Shape (N,): of the last frame, to be changed, as all up to `recent`.
-        missing_s: Shape (N,).
-        counts: Shape (6, N); see `life_cycle.count_detections`.
-        flags: Shape (2, N); see there.
-        recent: Shape (N, W).
-        own_hand: Shape (N,), to be filled in.
-        fate: Shape (3, N), to be filled in: called, seen, stays.
-        is_left: Shape (M,), to be filled in: sane, and nobody's.
 
     Returns:
-        Whether somebody may be tracked twice.
+        The state, everybody's mean and covariance over the modes, shapes (N, 4) and (N, 4, 4), and
+        the identity of the next customer.
     """
-    settings = named(numbers)
+    settings, tracks = named(numbers), weight.shape[1]
     rows, rest = admit(
         values, noise, model, pose, raised, person, may_enter,
         settings.unknown_range_m, settings.same_person_distance_m,
     )  # fmt: skip
+    state = State(
+        np.empty_like(weight), np.empty_like(mean), np.empty_like(covariance),
+        spans.copy(), counts.copy(), flags.copy(), recent.copy(),
+    )  # fmt: skip
     predict(
-        weight, mean, covariance, transition, motion_noise, switching, weights, means, covariances
-    )
-    tracks = len(id)
-    one_mean, _ = merge_modes(weights, means, covariances)
+        weight, mean, covariance, transition, motion_noise, switching,
+        state.weight, state.mean, state.covariance,
+    )  # fmt: skip
+    one_mean, _ = merge_modes(state.weight, state.mean, state.covariance)
     in_camera = visibility(one_mean, view)
     in_view = in_camera
     if has_scan:
@@ -184,47 +193,43 @@ def track_frame(
     hand_chance = np.empty(tracks)
     for track in range(tracks):
         lapse_s = dt_s * in_view[track]
-        existence[track] *= np.exp(-lapse_s / settings.delete_after_s)
-        missing_s[track] += lapse_s
-        hand_chance[track] = in_camera[track] * (1.0 if counts[1, track] == 0 else RAISES_AGAIN)
+        state.spans[EXISTENCE, track] *= np.exp(-lapse_s / settings.delete_after_s)
+        state.spans[MISSING_S, track] += lapse_s
+        was_up = counts[MISSED, track] == 0
+        hand_chance[track] = in_camera[track] * (1.0 if was_up else RAISES_AGAIN)
 
     biased = noise.copy()
     if bias > 1.0:
         for row in rows:
             if np.isnan(values[row, 1]):
                 biased[row, 0, 0] = min(noise[row, 0, 0] * bias, BEARING_VARIANCE_MAX)
-    called_by = _update(
-        weights, means, covariances, existence, rows, values, biased, model, pose, doubt,
-        hand_chance, settings,
-    )  # fmt: skip
-    shown_by = _update(
-        weights, means, covariances, existence, rest, values, biased, model, pose, doubt,
-        in_view, settings,
-    )  # fmt: skip
+    called_by = _update(state, rows, values, biased, model, pose, doubt, hand_chance, settings)
+    shown_by = _update(state, rest, values, biased, model, pose, doubt, in_view, settings)
 
-    is_customer = np.empty(tracks, np.bool_)
-    is_left[:] = False
-    for row in rows:
-        is_left[row] = True
-    for row in rest:
-        is_left[row] = True
+    is_called, is_seen = called_by >= 0, (called_by >= 0) | (shown_by >= 0)
     for track in range(tracks):
-        is_customer[track] = id[track] > 0
-        is_called, is_shown = called_by[track] >= 0, shown_by[track] >= 0
-        fate[0, track], fate[1, track] = is_called, is_called or is_shown
-        own_hand[track] = -1
-        if is_shown:
-            own_hand[track] = hand[shown_by[track]]
-            is_left[shown_by[track]] = False
-        if is_called:
-            own_hand[track] = hand[called_by[track]]
-            is_left[called_by[track]] = False
-    count_detections(
-        fate[0], fate[1], stamp_ns, existence, counts, flags, recent, missing_s, settings
-    )
-    decide_who_stays(
-        is_customer, stamp_ns, born_ns, existence, counts, flags, recent, missing_s, settings,
-        fate[2],
-    )  # fmt: skip
-    one_mean, _ = merge_modes(weights, means, covariances)
-    return has_twins(one_mean, is_customer, fate[1], settings.same_person_distance_m)
+        if is_called[track]:
+            state.counts[HAND, track] = hand[called_by[track]]
+            if counts[ID, track] == 0:  # bystanders who raise a hand become customers
+                state.counts[ID, track] = next_id
+                next_id += 1
+        elif is_seen[track]:
+            state.counts[HAND, track] = hand[shown_by[track]]
+        else:
+            state.counts[HAND, track] = -1
+    count_detections(state, 0, is_called, is_seen, stamp_ns, settings)
+    one_mean, one_covariance = merge_modes(state.weight, state.mean, state.covariance)
+    rows, rest = _left(rows, called_by, len(values)), _left(rest, shown_by, len(values))
+    distance_m = settings.same_person_distance_m
+    if len(rows) or len(rest) or has_twins(one_mean, state.counts[ID], is_seen, distance_m):
+        state, next_id = renew(
+            state, one_mean, is_called, is_seen, rows, rest,
+            values, biased, model, pose, doubt, hand, stamp_ns, next_id, settings,
+        )  # fmt: skip
+    else:
+        stays = decide_who_stays(state, tracks, stamp_ns, settings)
+        if stays.all():
+            return state, one_mean, one_covariance, next_id
+        state = selected(state, stays)
+    one_mean, one_covariance = merge_modes(state.weight, state.mean, state.covariance)
+    return state, one_mean, one_covariance, next_id

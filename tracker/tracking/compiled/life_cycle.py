@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.tracking.compiled.loop import loop
 from tracker.tracking.compiled.settings import Settings
+from tracker.tracking.compiled.state import (
+    BORN_NS,
+    CALLED_NS,
+    CONFIRMED,
+    DETECTED,
+    DETECTIONS,
+    EXISTENCE,
+    ID,
+    MISSED,
+    MISSING_S,
+    RAISED,
+    RAISED_SINCE_NS,
+    SEEN_NS,
+    State,
+)
 from tracker.tracking.life_cycle import EXISTENCE_MIN, LOG_EVIDENCE_MAX
 
 
-@njit(error_model="numpy")
+@loop
 def believe(existence: FloatArray, chosen: IntArray, odds: FloatArray, chance: FloatArray) -> None:
     """Bayes' rule on existence, in place: `life_cycle.believe`.
 
@@ -29,93 +44,78 @@ def believe(existence: FloatArray, chosen: IntArray, odds: FloatArray, chance: F
         existence[person] = min(ratio / (1.0 + ratio), 1.0 - 1e-6)
 
 
-@njit(error_model="numpy")
+@loop
 def count_detections(
+    state: State,
+    first: int,
     is_called: BoolArray,
     is_seen: BoolArray,
     stamp_ns: int,
-    existence: FloatArray,
-    counts: IntArray,
-    flags: BoolArray,
-    recent: BoolArray,
-    missing_s: FloatArray,
     settings: Settings,
 ) -> None:
     """Take note of one frame, in place: `life_cycle.count_detections` and `Streaks.step`.
 
     Args:
+        state: Of everybody, with the existence after this frame.
+        first: Whoever stands in an earlier row is passed over.
         is_called: Shape (N,).
         is_seen: Shape (N,).
         stamp_ns: This frame's.
-        existence: Shape (N,), after this frame.
-        counts: Shape (6, N): streaks' detected and missed, detections, raised_since_ns, seen_ns,
-            called_ns.
-        flags: Shape (2, N): raised, confirmed.
-        recent: Shape (N, W).
-        missing_s: Shape (N,).
         settings: Of the tracker.
     """
-    for person in range(len(existence)):
+    counts, flags, recent = state.counts, state.flags, state.recent
+    for person in range(first, len(is_called)):
         for age in range(recent.shape[1] - 1, 0, -1):
             recent[person, age] = recent[person, age - 1]
         recent[person, 0] = is_called[person]
-        was_raised = flags[0, person]
+        was_raised = flags[RAISED, person]
         if is_called[person]:
-            counts[0, person] += 1
-            counts[1, person] = 0
-            counts[2, person] += 1
-            counts[5, person] = stamp_ns
-            flags[0, person] |= counts[0, person] >= settings.raise_streak
+            counts[DETECTED, person] += 1
+            counts[MISSED, person] = 0
+            counts[DETECTIONS, person] += 1
+            counts[CALLED_NS, person] = stamp_ns
+            flags[RAISED, person] |= counts[DETECTED, person] >= settings.raise_streak
         else:
-            counts[0, person] = 0
-            counts[1, person] += 1
-            flags[0, person] &= counts[1, person] < settings.lower_streak
-        if flags[0, person] and not was_raised:
-            counts[3, person] = stamp_ns
+            counts[DETECTED, person] = 0
+            counts[MISSED, person] += 1
+            flags[RAISED, person] &= counts[MISSED, person] < settings.lower_streak
+        if flags[RAISED, person] and not was_raised:
+            counts[RAISED_SINCE_NS, person] = stamp_ns
         if is_seen[person]:
-            counts[4, person] = stamp_ns
-            missing_s[person] = 0.0
+            counts[SEEN_NS, person] = stamp_ns
+            state.spans[MISSING_S, person] = 0.0
         if settings.confirms_by_existence > 0.0:
-            is_convinced = is_called[person] and existence[person] >= settings.confirm_existence
+            is_sure = state.spans[EXISTENCE, person] >= settings.confirm_existence
+            is_convinced = is_called[person] and is_sure
         else:
             is_convinced = recent[person].sum() >= settings.confirm_detections
-        flags[1, person] |= is_convinced
+        flags[CONFIRMED, person] |= is_convinced
 
 
-@njit(error_model="numpy")
-def decide_who_stays(
-    is_customer: BoolArray,
-    stamp_ns: int,
-    born_ns: IntArray,
-    existence: FloatArray,
-    counts: IntArray,
-    flags: BoolArray,
-    recent: BoolArray,
-    missing_s: FloatArray,
-    settings: Settings,
-    keep: BoolArray,
-) -> None:
-    """Whom to keep, written to `keep`; the arguments are as above: `life_cycle.still_there`."""
-    for person in range(len(existence)):
-        if not is_customer[person]:
-            known_s = (counts[4, person] - born_ns[person]) / 1e9
-            keep[person] = missing_s[person] <= min(known_s, settings.delete_after_s) + 1e-9
+@loop
+def decide_who_stays(state: State, people: int, stamp_ns: int, settings: Settings) -> BoolArray:
+    """Whom of the first so many people to keep: `life_cycle.still_there`."""
+    counts, keep = state.counts, np.empty(people, np.bool_)
+    latest_ns = stamp_ns - round(settings.forget_after_s * 1e9)
+    for person in range(people):
+        missing_s = state.spans[MISSING_S, person]
+        if counts[ID, person] == 0:
+            known_s = (counts[SEEN_NS, person] - counts[BORN_NS, person]) / 1e9
+            keep[person] = missing_s <= min(known_s, settings.delete_after_s) + 1e-9
             continue
-        patience_s = settings.delete_after_s * min(
-            counts[2, person] / settings.mature_detections, 1.0
-        )
-        is_alive = missing_s[person] <= patience_s + 1e-9 and counts[
-            5, person
-        ] >= stamp_ns - round(settings.forget_after_s * 1e9)
-        if not flags[1, person]:
+        maturity = min(counts[DETECTIONS, person] / settings.mature_detections, 1.0)
+        is_alive = missing_s <= settings.delete_after_s * maturity + 1e-9
+        is_alive &= counts[CALLED_NS, person] >= latest_ns
+        if not state.flags[CONFIRMED, person]:
             if settings.confirms_by_existence > 0.0:
-                is_alive &= existence[person] >= EXISTENCE_MIN
+                is_alive &= state.spans[EXISTENCE, person] >= EXISTENCE_MIN
             else:
-                is_alive = _may_be_confirmed(recent[person], settings.confirm_detections)
+                is_alive = _may_be_confirmed(state.recent[person], settings.confirm_detections)
         keep[person] = is_alive
+    return keep
 
 
-@njit(error_model="numpy")
+@loop
 def _may_be_confirmed(recent: BoolArray, needed: float) -> bool:
     window = len(recent)
     for fresh in range(1, window):
@@ -125,13 +125,11 @@ def _may_be_confirmed(recent: BoolArray, needed: float) -> bool:
     return False
 
 
-@njit(error_model="numpy")
-def has_twins(
-    mean: FloatArray, is_customer: BoolArray, is_seen: BoolArray, distance_m: float
-) -> bool:
-    """Whether a silent customer stands that close to somebody seen: then `merge_twins` decides."""
+@loop
+def has_twins(mean: FloatArray, id: IntArray, is_seen: BoolArray, distance_m: float) -> bool:
+    """Whether a silent customer stands that close to somebody seen."""
     for silent in range(len(mean)):
-        if is_seen[silent] or not is_customer[silent]:
+        if is_seen[silent] or id[silent] == 0:
             continue
         for seen in range(len(mean)):
             dx, dy = mean[silent, 0] - mean[seen, 0], mean[silent, 1] - mean[seen, 1]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from tracker.containers import FloatArray, IntArray, MeasurementModel
+from tracker.tracking.compiled.loop import loop
 from tracker.tracking.compiled.prediction import merge_modes, wrapped
 from tracker.tracking.compiled.settings import Settings
 from tracker.tracking.outliers import ROUNDS
@@ -22,7 +22,7 @@ Y0, Y1, H00, H01, H10, H11, R00, R01, R11, LOG_LIKELIHOOD = range(10)
 _E0, _E1, _J00, _J01, _J10, _J11, _P00, _P01, _P11, _S00, _S01, _S11, _D00, _D01, _D11 = range(15)
 
 
-@njit(error_model="numpy")
+@loop
 def find_pairs(
     weight: FloatArray,
     mean: FloatArray,
@@ -102,7 +102,7 @@ def find_pairs(
     return track[:pairs], claim[:pairs], numbers[:pairs], odds[:pairs]
 
 
-@njit(error_model="numpy")
+@loop
 def _inside_box(
     seen: FloatArray,
     kind: int,
@@ -138,7 +138,7 @@ def _inside_box(
     return count
 
 
-@njit(error_model="numpy")
+@loop
 def log_of_sum(first: float, second: float) -> float:
     """log(exp(a) + exp(b)) without overflow."""
     most = max(first, second)
@@ -147,14 +147,14 @@ def log_of_sum(first: float, second: float) -> float:
     return most + np.log1p(np.exp(-abs(first - second)))
 
 
-@njit(error_model="numpy")
+@loop
 def _twice(array: FloatArray) -> FloatArray:
     longer = np.empty((2 * len(array), *array.shape[1:]), array.dtype)
     longer[: len(array)] = array
     return longer
 
 
-@njit(error_model="numpy")
+@loop
 def _grouped(
     rows: IntArray, values: FloatArray, model: IntArray, pose: FloatArray, doubt: FloatArray
 ) -> tuple[IntArray, IntArray, IntArray]:
@@ -183,7 +183,7 @@ def _grouped(
     return order, bounds, kinds[:groups]
 
 
-@njit(error_model="numpy")
+@loop
 def _is_same_sensor(row: int, other: int, pose: FloatArray, doubt: FloatArray) -> bool:
     for i in range(3):
         if pose[row, i] != pose[other, i]:
@@ -194,7 +194,7 @@ def _is_same_sensor(row: int, other: int, pose: FloatArray, doubt: FloatArray) -
     return True
 
 
-@njit(error_model="numpy")
+@loop
 def _expect(
     mean: FloatArray,
     covariance: FloatArray,
@@ -218,16 +218,9 @@ def _expect(
         seen[_J10], seen[_J11] = cos, sin
         if kind == _BEARING:
             seen[_E1] = seen[_J10] = seen[_J11] = 0.0
-        # Derivatives by the sensor's x, y and yaw: (-J, (-1, 0)).
-        for i in range(3):
-            for j in range(3):
-                left0 = -1.0 if i == 2 else -seen[_J00 + i]
-                left1 = 0.0 if i == 2 else -seen[_J10 + i]
-                right0 = -1.0 if j == 2 else -seen[_J00 + j]
-                right1 = 0.0 if j == 2 else -seen[_J10 + j]
-                seen[_D00] += left0 * doubt[i, j] * right0
-                seen[_D01] += left0 * doubt[i, j] * right1
-                seen[_D11] += left1 * doubt[i, j] * right1
+        seen[_D00], seen[_D01], seen[_D11] = pose_doubt(
+            seen[_J00], seen[_J01], seen[_J10], seen[_J11], doubt
+        )
     h00, h01, h10, h11 = seen[_J00], seen[_J01], seen[_J10], seen[_J11]
     p00, p01, p11 = covariance[0, 0], covariance[0, 1], covariance[1, 1]
     x0, y0 = h00 * p00 + h01 * p01, h00 * p01 + h01 * p11
@@ -243,7 +236,23 @@ def _expect(
     seen[_S11] = max(seen[_P11], floor_m**2 * (h10 * h10 + h11 * h11)) + seen[_D11]
 
 
-@njit(error_model="numpy")
+@loop
+def pose_doubt(
+    h00: float, h01: float, h10: float, h11: float, doubt: FloatArray
+) -> tuple[float, float, float]:
+    """What the pose's covariance adds to the noise: `sensor_model.pose_noise`.
+
+    The derivatives by the sensor's x, y and yaw are (-J, (-1, 0)), all of one sign.
+    """
+    xx, xy, yy, turn = doubt[0, 0], doubt[0, 1], doubt[1, 1], doubt[2, 2]
+    a0, a1 = xx * h00 + xy * h01 + doubt[0, 2], xy * h00 + yy * h01 + doubt[1, 2]
+    a2 = doubt[0, 2] * h00 + doubt[1, 2] * h01 + turn
+    b0, b1 = xx * h10 + xy * h11, xy * h10 + yy * h11
+    b2 = doubt[0, 2] * h10 + doubt[1, 2] * h11
+    return h00 * a0 + h01 * a1 + a2, h00 * b0 + h01 * b1 + b2, h10 * b0 + h11 * b1
+
+
+@loop
 def _innovation(seen: FloatArray, values: FloatArray, kind: int) -> tuple[float, float]:
     first = values[0] - seen[_E0]
     if kind != _CARTESIAN:
@@ -251,14 +260,14 @@ def _innovation(seen: FloatArray, values: FloatArray, kind: int) -> tuple[float,
     return first, 0.0 if kind == _BEARING else values[1] - seen[_E1]
 
 
-@njit(error_model="numpy")
+@loop
 def _noise(noise: FloatArray, kind: int) -> tuple[float, float, float]:
     if kind == _BEARING:
         return noise[0, 0], 0.0, 1.0
     return noise[0, 0], noise[0, 1], noise[1, 1]
 
 
-@njit(error_model="numpy")
+@loop
 def _distance(
     seen: FloatArray, values: FloatArray, noise: FloatArray, kind: int, dof: float
 ) -> tuple[float, float]:
@@ -274,7 +283,7 @@ def _distance(
     return first * first / s00 + square, s00 * s_rest
 
 
-@njit(error_model="numpy")
+@loop
 def _compare(
     seen: FloatArray,
     values: FloatArray,
@@ -297,7 +306,7 @@ def _compare(
     numbers[LOG_LIKELIHOOD] = -0.5 * (distance + np.log(area) + freedom * _LOG_TURN)
 
 
-@njit(error_model="numpy")
+@loop
 def _outlier_variance(
     seen: FloatArray, first: float, second: float, r00: float, r01: float, r11: float, dof: float
 ) -> float:
@@ -315,7 +324,7 @@ def _outlier_variance(
     return r11 + r * (1.0 / weight - 1.0)
 
 
-@njit(error_model="numpy")
+@loop
 def _newcomer_density(kind: int, values: FloatArray, settings: Settings) -> float:
     if kind == _CARTESIAN:
         return settings.newcomer_density

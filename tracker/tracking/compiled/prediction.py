@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from tracker.containers import FloatArray
+from tracker.tracking.compiled.loop import loop
 from tracker.tracking.view import ARM_M, DEPTH_MIN_M, HALF_BODY_M, OCCLUDED
 
 _TURN = 2.0 * np.pi
 
 
-@njit(error_model="numpy")
+@loop
 def wrapped(angle_rad: float) -> float:
     """The same direction in [-pi, pi)."""
     return angle_rad - _TURN * np.floor((angle_rad + np.pi) / _TURN)
 
 
-@njit(error_model="numpy")
+@loop
 def predict(
     weight: FloatArray,
     mean: FloatArray,
@@ -58,7 +58,7 @@ def predict(
             _carry(own_mean, own, transition[to], noise[to])
 
 
-@njit(error_model="numpy")
+@loop
 def mix(
     first: float,
     second: float,
@@ -80,7 +80,7 @@ def mix(
             )
 
 
-@njit(error_model="numpy")
+@loop
 def _carry(
     mean: FloatArray, covariance: FloatArray, transition: FloatArray, noise: FloatArray
 ) -> None:
@@ -101,7 +101,7 @@ def _carry(
             covariance[row, column] += noise[row, column]
 
 
-@njit(error_model="numpy")
+@loop
 def merge_modes(
     weight: FloatArray, mean: FloatArray, covariance: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
@@ -121,7 +121,7 @@ def merge_modes(
     return means, covariances
 
 
-@njit(error_model="numpy")
+@loop
 def visibility(mean: FloatArray, view: FloatArray) -> FloatArray:
     """Chance that nothing but the detector keeps people from being seen: `view.visibility`.
 

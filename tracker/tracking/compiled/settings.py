@@ -6,10 +6,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from tracker.config import Config
 from tracker.containers import FloatArray
+from tracker.tracking.compiled.loop import loop
 from tracker.tracking.gating import gate_limit
 
 
@@ -35,6 +35,9 @@ class Settings(NamedTuple):
     confirm_existence: float
     confirm_detections: float
     mature_detections: float
+    unknown_range_std_m: float
+    initial_speed_std_mps: float
+    stand_speed_std_mps: float
     is_joint: float
     confirms_by_existence: float
 
@@ -63,6 +66,9 @@ def settings_of(config: Config) -> FloatArray:
             confirm_existence=config.confirm_existence,
             confirm_detections=config.confirm_detections,
             mature_detections=config.mature_detections,
+            unknown_range_std_m=config.unknown_range_std_m,
+            initial_speed_std_mps=config.initial_speed_std_mps,
+            stand_speed_std_mps=config.stand_speed_std_mps,
             is_joint=config.association == "jpda",
             confirms_by_existence=config.confirmation == "existence",
         ),
@@ -70,11 +76,11 @@ def settings_of(config: Config) -> FloatArray:
     )
 
 
-@njit
+@loop
 def named(numbers: FloatArray) -> Settings:
     """The same numbers by their names, inside compiled code."""
     return Settings(
         numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6],
         numbers[7], numbers[8], numbers[9], numbers[10], numbers[11], numbers[12], numbers[13],
-        numbers[14], numbers[15], numbers[16], numbers[17],
+        numbers[14], numbers[15], numbers[16], numbers[17], numbers[18], numbers[19], numbers[20],
     )  # fmt: skip

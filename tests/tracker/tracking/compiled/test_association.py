@@ -5,10 +5,22 @@ from scipy.optimize import linear_sum_assignment
 pytest.importorskip("numba", reason="numba (the extra fast) is not installed")
 
 
-@pytest.mark.parametrize("seed", range(30))
-def test_pairs_in_several_clusters_are_assigned_at_the_highest_sum(seed):
-    from tracker.tracking.compiled.association import assign_pairs
+@pytest.fixture(scope="module")
+def assign_pairs():
+    """Loops are called by compiled functions alone."""
+    from numba import njit
 
+    from tracker.tracking.compiled import association
+
+    @njit
+    def call(track, claim, odds, tracks, claims):
+        return association.assign_pairs(track, claim, odds, tracks, claims)
+
+    return call
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_pairs_in_several_clusters_are_assigned_at_the_highest_sum(assign_pairs, seed):
     rng = np.random.default_rng(seed)
     tracks, claims = rng.integers(1, 12, 2)
     is_pair = rng.random((tracks, claims)) < rng.uniform(0.1, 0.9)
