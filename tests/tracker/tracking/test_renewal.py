@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tracker import Config, Measurements
+from tracker.tracking.life_cycle import count_detections
 from tracker.tracking.motion import modes_of
 from tracker.tracking.observation import Observed
 from tracker.tracking.people import People
@@ -49,8 +50,9 @@ def test_a_lowered_hand_alone_is_nobody():
 
 
 def test_a_bystander_who_is_called_gets_the_next_identity():
-    people = room((1.0, 0.0), (5.0, 0.0))
-    seen = observed(people, is_called=[False, True], is_seen=[True, True])
+    called, seen = np.array([False, True]), np.array([True, True])
+    people = count_detections(room((1.0, 0.0), (5.0, 0.0)), called, seen, 10**8, CONFIG)
+    seen = observed(people, is_called=called, is_seen=seen)
     people, next_id = renew(seen, 4, 10**8, CONFIG)
     assert people.id.tolist() == [0, 4]
     assert next_id == 5
