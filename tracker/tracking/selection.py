@@ -73,10 +73,10 @@ class Selector:
     def _keeps(self, people: People, stamp_ns: int) -> bool:
         if self._chosen_id is None:
             return False
-        rows = np.flatnonzero(people.id == self._chosen_id)
-        if len(rows) == 0:
+        ids = people.id.tolist()
+        if self._chosen_id not in ids:
             return False
-        if people.streaks.raised[rows[0]]:
+        if people.streaks.raised[ids.index(self._chosen_id)]:
             self._last_raised_ns = stamp_ns
             return True
         held_ns = stamp_ns - self._last_raised_ns
