@@ -1,11 +1,12 @@
 """What does one frame cost, at 1 to 500 people? The product beside its peers, in one run.
 
-    python benchmarks/frame_cost.py [--people 1 5 20 100 500] [--seconds 12]
+    python benchmarks/frame_cost.py [--people 1 5 20 100 500] [--seconds 12] [--turn 1]
 
 Everybody is tracked and measured in every frame, far enough apart that no tracker has to guess.
-Contenders take turns, a frame each and in a new order each time, so that other work on the machine
-and memory that the one before has left cold slow all alike; medians. The product's frames are
-compiled where numba is installed, and compared with those that are not.
+Contenders take turns in a new order each time, so that other work on the machine slows all alike;
+medians. With turns of one frame everybody finds the caches cold, as on a robot whose perception
+works in between; with longer turns they are warm, as in a study. The product's frames are compiled
+where numba is installed, and compared with those that are not.
 
   plain       product: constant velocity, Hungarian, Gaussian ranges
   default     product: every default (stand-or-walk IMM, heavy-tailed ranges, occlusion, existence)
@@ -140,7 +141,7 @@ def places(people: int) -> np.ndarray:
     return 3.0 + 2.0 * grid[:people].astype(float)
 
 
-def medians_us(people: int, seconds: float) -> dict[str, float]:
+def medians_us(people: int, seconds: float, turn: int) -> dict[str, float]:
     """Median microseconds of a frame of each contender; NaN where it was left out."""
     rng = np.random.default_rng(people)
     at = places(people)
@@ -153,13 +154,16 @@ def medians_us(people: int, seconds: float) -> dict[str, float]:
     spent: dict[str, list[float]] = {name: [] for name in CONTENDERS}
     begin_s, frame = time.perf_counter(), 0
     while frame < 8 or (time.perf_counter() - begin_s < seconds and frame < 400):
-        at = at + rng.normal(0.0, 0.01, at.shape)
-        measured = at + rng.normal(0.0, STD_M, at.shape)
+        measured = []
+        for _ in range(turn):
+            at = at + rng.normal(0.0, 0.01, at.shape)
+            measured.append(at + rng.normal(0.0, STD_M, at.shape))
         for name in rng.permutation(list(steps)):
-            start = time.perf_counter()
-            steps[name](frame, measured)
-            spent[name].append(time.perf_counter() - start)
-        frame += 1
+            for number, xy in enumerate(measured):
+                start = time.perf_counter()
+                steps[name](frame + number, xy)
+                spent[name].append(time.perf_counter() - start)
+        frame += turn
     # The first frames confirm everybody; they cost something else.
     return {
         name: 1e6 * float(np.median(times[4:])) if times else np.nan
@@ -171,6 +175,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--people", type=int, nargs="+", default=[1, 5, 20, 100, 500])
     parser.add_argument("--seconds", type=float, default=12.0, help="for each number of people")
+    parser.add_argument("--turn", type=int, default=1, help="frames of one contender in a row")
     words = parser.parse_args()
     warnings.filterwarnings("ignore", module="norfair|motpy|filterpy|stonesoup")
     cost, ratio = (Table(title=title, title_justify="left") for title in (
@@ -180,7 +185,7 @@ def main() -> None:
         for column in ("people", *CONTENDERS):
             table.add_column(column, justify="right")
     for people in words.people:
-        medians = medians_us(people, words.seconds)
+        medians = medians_us(people, words.seconds, words.turn)
         told = {name: "-" if np.isnan(us) else f"{us:,.0f}" for name, us in medians.items()}
         cost.add_row(str(people), *told.values())
         shares = [us / medians["plain"] for us in medians.values()]

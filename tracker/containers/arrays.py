@@ -39,7 +39,7 @@ def frozen(value: ArrayLike, dtype: np.dtype[Any] = NUMBERS) -> NDArray[Any]:
     if type(value) is np.ndarray and value.dtype == dtype and not value.flags.writeable:
         return value
     view: NDArray[Any] = np.asarray(value, dtype=dtype).view()
-    view.flags.writeable = False
+    view.setflags(write=False)
     return view
 
 
@@ -74,7 +74,7 @@ def select(batch: _Batch, rows: Any) -> _Batch:
 def constant(value: float, shape: tuple[int, ...], dtype: np.dtype[Any] = NUMBERS) -> NDArray[Any]:
     """An array that is the same everywhere, shared by all who ask for it."""
     array = np.full(shape, value, dtype)
-    array.flags.writeable = False
+    array.setflags(write=False)
     return array
 
 

@@ -66,7 +66,7 @@ def people_of(state: State, mean: FloatArray, covariance: FloatArray) -> People:
         covariance: Shape (N, 4, 4).
     """
     for array in (*state, mean, covariance):
-        array.flags.writeable = False  # once for all that looks into them
+        array.setflags(write=False)  # once for all that looks into them
     existence, missing_s = state.spans
     id, born_ns, detected, missed, detections, raised_since_ns, seen_ns, called_ns, hand = (
         state.counts
