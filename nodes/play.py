@@ -16,6 +16,7 @@ from nodes.dds.profiles import CLOCK, DEFAULT
 from nodes.qos import PROFILES, Profile
 from nodes.topics import Input
 from tracker.camera import CameraModel
+from tracker.closing import Closing
 from tracker.containers import CameraImage, Scan
 from tracker.errors import ConfigError, RecordingError
 from tracker.messages import CameraInfo, Encodable, Event, encode, types
@@ -118,7 +119,7 @@ def play(
     return played
 
 
-class _Tape:
+class _Tape(Closing):
     """The messages of a recording as ROS 2 would send them; a context manager."""
 
     def __init__(self, path: Path, topics: Collection[str] | None, *, best_effort: bool) -> None:
@@ -137,10 +138,8 @@ class _Tape:
             self._opened = opened.pop_all()
         self.start_ns = self._recording.summary.start_ns
 
-    def __enter__(self) -> _Tape:
-        return self
-
-    def __exit__(self, *_: object) -> None:
+    def close(self) -> None:
+        """Let go of the files."""
         self._opened.close()
 
     def share(self, log_ns: int) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable, Iterable, Mapping
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -37,6 +36,7 @@ from nodes.dds.services import (
     response_type,
 )
 from nodes.qos import Profile
+from tracker.closing import Closing
 from tracker.errors import ConfigError, RecordingError
 from tracker.messages import type_hash
 from tracker.messages.types import build, serialize
@@ -79,7 +79,7 @@ class Publisher:
         return int(self._writer.get_publication_matched_status().current_count)
 
 
-class Node:
+class Node(Closing):
     """A node that ROS 2's tools show as one of theirs; a context manager.
 
     Args:
@@ -120,17 +120,6 @@ class Node:
         register_services()
         self._graph = self._write(_GRAPH_TOPIC, _GRAPH_TYPE, GRAPH)
         self._announce()
-
-    def __enter__(self) -> Node:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def publisher(self, name: str, type_name: str, profile: Profile = DEFAULT) -> Publisher:
         """Announce a topic that this node publishes.

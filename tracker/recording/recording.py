@@ -7,9 +7,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
-from types import TracebackType
 
 from tracker.camera import CameraModel
+from tracker.closing import Closing
 from tracker.containers import CameraImage, Scan
 from tracker.errors import RecordingError, TrackerError
 from tracker.messages import DECODABLE, Event, types
@@ -73,7 +73,7 @@ class Skipped:
     first: str
 
 
-class Recording:
+class Recording(Closing):
     """Sensor data in log-time order; a context manager. Made by `open_recording`.
 
     Attributes:
@@ -108,17 +108,6 @@ class Recording:
         self.topics = self.summary.topics
         self.read_topics = self._find_topics(topics)
         self._note_stamps()
-
-    def __enter__(self) -> Recording:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Let go of the files."""

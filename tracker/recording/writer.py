@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from copy import deepcopy
 from pathlib import Path
-from types import TracebackType
 from typing import Any, BinaryIO
 
 import yaml
 from mcap.writer import CompressionType, Writer
 
+from tracker.closing import Closing
 from tracker.containers import CameraImage
 from tracker.errors import RecordingError
 from tracker.messages import Encodable, Encoded, definition, encode, type_hash
@@ -19,7 +19,7 @@ from tracker.recording.qos import offered_qos
 _METADATA_VERSION = 8
 
 
-class RecordingWriter:
+class RecordingWriter(Closing):
     """Writes containers as ROS 2 messages, streaming; a context manager.
 
     Whatever ends the `with` block, what was written until then can be read.
@@ -58,17 +58,6 @@ class RecordingWriter:
         self._first_ns: int | None = None
         self._last_ns = 0
         self._is_open = True
-
-    def __enter__(self) -> RecordingWriter:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def write(self, topic: str, log_ns: int, item: Encodable) -> None:
         """Write one item.

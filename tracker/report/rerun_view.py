@@ -12,12 +12,12 @@ The only timeline is `stamp`, the sensors' own time.
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import cv2
 import numpy as np
 
+from tracker.closing import Closing
 from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Tracks
 from tracker.errors import ConfigError, RecordingError
 from tracker.perception.drawing import FINGER_ROOTS, FINGERS, LOWERED_COLOR, RAISED_COLOR
@@ -34,7 +34,7 @@ _EYE_M, _LOOKED_AT_M = (1.5, 0.0, 9.0), (1.5, 0.0, 0.0)  # from above, at what i
 _NOBODY = "nobody"
 
 
-class RerunView:
+class RerunView(Closing):
     """Shows each image of a replay; a context manager.
 
     Args:
@@ -94,17 +94,6 @@ class RerunView:
         """Nothing more comes; the file is complete."""
         self._stream.flush()
         self._stream.disconnect()
-
-    def __enter__(self) -> RerunView:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _show_camera(self, image: CameraImage, hands: Hands) -> None:
         rerun, log = self._rerun, self._stream.log

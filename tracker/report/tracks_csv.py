@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 
+from tracker.closing import Closing
 from tracker.containers import FrameResult
 from tracker.errors import RecordingError
 
@@ -14,7 +14,7 @@ COLUMNS = (
 )  # fmt: skip
 
 
-class TracksCsv:
+class TracksCsv(Closing):
     """Writes confirmed customers line by line; what is written stays readable after a crash.
 
     Args:
@@ -56,17 +56,6 @@ class TracksCsv:
     def close(self) -> None:
         """Nothing more comes."""
         self._file.close()
-
-    def __enter__(self) -> TracksCsv:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _put(self, text: str) -> None:
         line = text.encode("ascii")
