@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from concurrent.futures import Executor
-from contextlib import closing
+from contextlib import ExitStack, closing
 from dataclasses import asdict
 from functools import partial
 from importlib.metadata import version
@@ -101,7 +101,8 @@ def monte_carlo(
 
     Raises:
         SceneError: No scenario has this name, or its recording of paths cannot be used.
-        ConfigError: There are no trials, the seed is negative, or the folder holds another study.
+        ConfigError: There are no trials, the seed is negative, the folder holds another study, or
+            somebody else writes there.
         RecordingError: The folder cannot be read or written.
         WorkerError: The executor's workers die again and again.
     """
@@ -113,18 +114,20 @@ def monte_carlo(
     config = default_config(scenario) if config is None else config
     size = _unit_trials(scenario)
     gathered, done, log = Gathered(), 0, None
-    if folder is not None:
-        settings = _settings(scenario, config, seed)
-        log = StudyLog(folder, settings, size, _shapes_of_sums(scenario))
-        for unit in log.units(trials):
-            gathered.add(unit)
-            done += 1
-    progress(min(done * size, trials) / trials)
-    calls = (
-        partial(run_unit, scenario, config, seed, first, min(size, trials - first))
-        for first in range(done * size, trials, size)
-    )
-    with closing(run_in_order(calls, executor)) as units:
+    with ExitStack() as opened:
+        if folder is not None:
+            settings = _settings(scenario, config, seed)
+            shapes = _shapes_of_sums(scenario)
+            log = opened.enter_context(StudyLog(folder, settings, size, shapes))
+            for unit in log.units(trials):
+                gathered.add(unit)
+                done += 1
+        progress(min(done * size, trials) / trials)
+        calls = (
+            partial(run_unit, scenario, config, seed, first, min(size, trials - first))
+            for first in range(done * size, trials, size)
+        )
+        units = opened.enter_context(closing(run_in_order(calls, executor)))
         for number, unit in enumerate(units, start=done):
             gathered.add(unit)
             if log is not None:

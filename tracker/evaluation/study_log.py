@@ -2,29 +2,32 @@
 
 A folder holds `settings.yaml` (which study this is), `trials.csv` (a line per trial, in order,
 every number to its last bit) and, of a filter scenario, `sums.f64` (a record for each unit). They
-only grow: whatever was written stays, however the study ended.
+only grow: whatever was written stays, however the study ended. One study at a time writes there.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
 
+from tracker.closing import Closing
 from tracker.containers import FloatArray
 from tracker.errors import ConfigError, RecordingError
+from tracker.evaluation.folder_lock import FolderLock
 from tracker.evaluation.unit import Unit
 
 #: Longer than any line of trials.csv.
 _BLOCK = 1 << 16
 
 
-class StudyLog:
-    """The units of a study, in a folder.
+class StudyLog(Closing):
+    """The units of a study, in a folder that is kept for it until it closes.
 
     Args:
         folder: Made where it is missing.
@@ -34,7 +37,7 @@ class StudyLog:
         sums: Name and shape of each of a unit's sums.
 
     Raises:
-        ConfigError: The folder holds another study.
+        ConfigError: The folder holds another study, or one writes there at this moment.
         RecordingError: The folder cannot be read or written.
     """
 
@@ -51,13 +54,16 @@ class StudyLog:
             [("trials", "<i8"), *((name, "<f8", shape) for name, shape in sums.items())]
         )
         self._rows_path, self._sums_path = self._folder / "trials.csv", self._folder / "sums.f64"
-        try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            self._agree(dict(settings))
-            self._rows = self._read_rows()
-            self._sums = self._read_sums()
-        except OSError as error:
-            raise self._failure(error) from error
+        with ExitStack() as opened:
+            try:
+                self._folder.mkdir(parents=True, exist_ok=True)
+                opened.enter_context(FolderLock(self._folder))
+                self._agree(dict(settings))
+                self._rows = self._read_rows()
+                self._sums = self._read_sums()
+            except OSError as error:
+                raise self._failure(error) from error
+            self._opened = opened.pop_all()
         self.trials = len(next(iter(self._rows.values()), ()))
 
     def units(self, trials: int) -> Iterator[Unit]:
@@ -114,6 +120,10 @@ class StudyLog:
         except OSError as error:
             raise self._failure(error) from error
         self.trials = max(self.trials, end)
+
+    def close(self) -> None:
+        """Let others write into the folder."""
+        self._opened.close()
 
     def _agree(self, settings: dict[str, Any]) -> None:
         path = self._folder / "settings.yaml"

@@ -2,18 +2,33 @@
 
 import dataclasses
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tracker.errors import ConfigError, RecordingError
+from tracker.evaluation.folder_lock import FolderLock
 from tracker.evaluation.monte_carlo import monte_carlo
 from tracker.evaluation.scenario import SCENARIOS, default_config
 from tracker.evaluation.study import study_as_dict
 
+ROOT = Path(__file__).parents[3]
 PEOPLE = dataclasses.replace(SCENARIOS["people"], duration_s=2.0)
 #: Ten units, the last one short.
 FILTER, FILTER_TRIALS = SCENARIOS["outliers"], 2300
+
+
+HOLD_THE_FOLDER = """
+import sys, time
+from pathlib import Path
+from tracker.evaluation.folder_lock import FolderLock
+lock = FolderLock(Path(sys.argv[1]))
+print("held", flush=True)
+time.sleep(60)
+"""
 
 
 class Stopped(BaseException):
@@ -116,6 +131,29 @@ def test_another_study_s_folder_is_refused_and_stays_as_it_is(tmp_path, changes,
     with pytest.raises(ConfigError, match=rf"holds another study.*{re.escape(named)}"):
         monte_carlo(**{"scenario": PEOPLE, "trials": 1, "seed": 3, "folder": tmp_path, **changes})
     assert files(tmp_path) == before
+
+
+def test_a_folder_in_which_another_command_writes_is_refused_and_stays_as_it_is(tmp_path):
+    def second_study(share):
+        before = files(tmp_path)
+        with pytest.raises(ConfigError, match=f"{tmp_path.name}: another command writes"):
+            monte_carlo(PEOPLE, 9, seed=3, folder=tmp_path)
+        assert files(tmp_path) == before
+
+    monte_carlo(PEOPLE, 3, seed=3, folder=tmp_path, progress=second_study)
+    monte_carlo(PEOPLE, 4, seed=3, folder=tmp_path)
+
+
+def test_a_killed_command_leaves_its_folder_to_the_next(tmp_path):
+    writer = subprocess.Popen(
+        [sys.executable, "-c", HOLD_THE_FOLDER, tmp_path], stdout=subprocess.PIPE, cwd=ROOT
+    )
+    with writer:
+        assert writer.stdout.readline() == b"held\n"
+        with pytest.raises(ConfigError, match="wait for its end, or name another folder"):
+            FolderLock(tmp_path)
+        writer.kill()
+    monte_carlo(PEOPLE, 1, folder=tmp_path)
 
 
 def test_trials_of_nobody_knows_which_study_are_refused(tmp_path):

@@ -1,0 +1,51 @@
+"""Who may write into a folder? One command at a time."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from tracker.closing import Closing
+from tracker.errors import ConfigError
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _take(number: int) -> None:
+        msvcrt.locking(number, msvcrt.LK_NBLCK, 1)
+else:
+    import fcntl
+
+    def _take(number: int) -> None:
+        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+class FolderLock(Closing):
+    """Keeps a folder for its process; however that ends, the system lets the folder go.
+
+    The file `.lock` stays: were it taken away, two could hold one each.
+
+    Args:
+        folder: An existing one.
+
+    Raises:
+        ConfigError: Somebody else writes there.
+        OSError: The file cannot be made.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._file = (folder / ".lock").open("ab")
+        try:
+            _take(self._file.fileno())
+        except (BlockingIOError, PermissionError) as error:
+            self.close()
+            raise ConfigError(
+                f"{folder}: another command writes there at this moment; wait for its end, or "
+                "name another folder."
+            ) from error
+        except OSError:  # a disk that knows no locks: then nobody is kept out
+            pass
+
+    def close(self) -> None:
+        """Let go of the folder."""
+        self._file.close()
