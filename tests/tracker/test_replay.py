@@ -6,63 +6,16 @@ import cv2
 import numpy as np
 import pytest
 
-from tracker import CameraImage, Config, Hands, Scan
+from tracker import CameraImage, Config, Scan
 from tracker.camera import CameraModel
 from tracker.errors import RecordingError
-from tracker.geometry import RigidTransform
 from tracker.messages import CameraInfo
 from tracker.recording import RecordingWriter, open_recording
 from tracker.replay import replay
-from tracker.transforms import StampedTransform
 
 DATA = Path(__file__).parents[2] / "../shared/data"
 START_NS = 1_700_000_000_000_000_000
 SECOND_NS = 1_000_000_000
-
-
-class HandAhead:
-    """A detector that sees one raised hand in the middle of each image."""
-
-    def find(self, image):
-        landmarks = np.full((1, 21, 2), 100.0)
-        landmarks[:, :, 0] = image.width / 2
-        landmarks[:, 12, 1] -= 60.0
-        landmarks[:, 9, 1] -= 30.0
-        one = np.ones(1)
-        return Hands(landmarks, one, one, one.astype(bool), one)
-
-    def reset(self):
-        pass
-
-    def configure(self, config):
-        pass
-
-
-def person_ahead(stamp_ns):
-    """Somebody 1.5 m ahead as a 0.4 m wide piece of a scan."""
-    angles = np.radians(np.arange(720) / 2 - 180)
-    ranges = np.where(np.abs(1.5 * np.tan(np.clip(angles, -1, 1))) < 0.2, 1.5, 5.0)
-    return Scan(stamp_ns, "laser", -np.pi, np.radians(0.5), 0.05, 12.0, ranges)
-
-
-def write_bag(path, seconds=2.0, *, transforms=True, images=True, scan=person_ahead, jump=None):
-    """A robot that stands and looks at somebody, 10 images and scans a second."""
-    fixed = [
-        StampedTransform(0, "map", "camera_link", RigidTransform(), is_static=True),
-        StampedTransform(0, "map", "laser", RigidTransform(), is_static=True),
-    ]
-    with RecordingWriter(path) as writer:
-        if transforms:
-            writer.write("/tf_static", START_NS, fixed)
-        for number in range(int(seconds * 10)):
-            log_ns = START_NS + number * SECOND_NS // 10
-            stamp_ns = log_ns - 5 * SECOND_NS if number == jump else log_ns
-            if scan is not None:
-                writer.write("/scan", log_ns, scan(stamp_ns))
-            if images:
-                picture = np.full((480, 640, 3), number % 200, np.uint8)
-                writer.write("/image_raw", log_ns, CameraImage(stamp_ns, "camera_link", picture))
-    return path
 
 
 def read_topics(path):
@@ -79,9 +32,11 @@ def read_table(path):
     return list(csv.DictReader(path.read_text().splitlines()))
 
 
-def test_a_replay_leaves_a_recording_a_table_a_summary_a_picture_and_a_video(tmp_path):
+def test_a_replay_leaves_a_recording_a_table_a_summary_a_picture_and_a_video(
+    tmp_path, write_bag, hand_ahead
+):
     bag = write_bag(tmp_path / "in.mcap")
-    result = replay(bag, tmp_path / "out", detector=HandAhead())
+    result = replay(bag, tmp_path / "out", detector=hand_ahead)
     assert result.problems == ()
     names = {path.name for path in result.files}
     assert names == {"output.mcap", "tracks.csv", "debug.mp4", "summary.json", "overview.png"}
@@ -103,9 +58,11 @@ def test_a_replay_leaves_a_recording_a_table_a_summary_a_picture_and_a_video(tmp
     assert sum(1 for _ in iter(lambda: video.read()[0], False)) == 20
 
 
-def test_output_mcap_holds_the_topics_of_the_node_with_the_pose_before_the_bool(tmp_path):
+def test_output_mcap_holds_the_topics_of_the_node_with_the_pose_before_the_bool(
+    tmp_path, write_bag, hand_ahead
+):
     bag = write_bag(tmp_path / "in.mcap")
-    replay(bag, tmp_path / "out", detector=HandAhead())
+    replay(bag, tmp_path / "out", detector=hand_ahead)
     seen = list(read_topics(tmp_path / "out/output.mcap"))
     topics = {topic for topic, _, _ in seen}
     assert topics >= {
@@ -123,15 +80,15 @@ def test_output_mcap_holds_the_topics_of_the_node_with_the_pose_before_the_bool(
     assert order.index("/customer_pose") < order.index("/hand_raised")
 
 
-def test_the_same_recording_gives_the_same_tracks(tmp_path):
+def test_the_same_recording_gives_the_same_tracks(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap")
     for out in ("a", "b"):
-        replay(bag, tmp_path / out, detector=HandAhead())
+        replay(bag, tmp_path / out, detector=hand_ahead)
     assert (tmp_path / "a/tracks.csv").read_bytes() == (tmp_path / "b/tracks.csv").read_bytes()
     assert (tmp_path / "a/output.mcap").read_bytes() == (tmp_path / "b/output.mcap").read_bytes()
 
 
-def test_camera_info_of_the_recording_is_used(tmp_path):
+def test_camera_info_of_the_recording_is_used(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in")
     info = CameraInfo(START_NS, "camera_link", 640, 480, CameraModel(460, 460, 100.0, 240))
     with RecordingWriter(tmp_path / "info.mcap") as writer:
@@ -140,24 +97,26 @@ def test_camera_info_of_the_recording_is_used(tmp_path):
             for log_ns, event in recording.events():
                 if isinstance(event, CameraImage):
                     writer.write("/image_raw", log_ns, event)
-    result = replay(tmp_path / "info.mcap", tmp_path / "out", detector=HandAhead())
+    result = replay(tmp_path / "info.mcap", tmp_path / "out", detector=hand_ahead)
     rows = read_table(tmp_path / "out/tracks.csv")
     bearing = np.arctan2(float(rows[-1]["y_m"]), float(rows[-1]["x_m"]))
     assert bearing == pytest.approx(-np.arctan(220 / 460), abs=0.02)
     assert result.history.frames_processed == 20
 
 
-def test_stamps_that_jump_back_are_a_problem_and_the_rest_is_replayed(tmp_path):
+def test_stamps_that_jump_back_are_a_problem_and_the_rest_is_replayed(
+    tmp_path, write_bag, hand_ahead
+):
     bag = write_bag(tmp_path / "in.mcap", jump=10)
-    result = replay(bag, tmp_path / "out", detector=HandAhead())
+    result = replay(bag, tmp_path / "out", detector=hand_ahead)
     assert "jumped back" in result.problems[0]
     assert "1699999996.0" in result.problems[0]
     assert result.history.frames_processed == 20
 
 
-def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path):
-    bag = write_bag(tmp_path / "in.mcap", transforms=False)
-    result = replay(bag, tmp_path / "out", detector=HandAhead())
+def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path, write_bag, hand_ahead):
+    bag = write_bag(tmp_path / "in.mcap", links=())
+    result = replay(bag, tmp_path / "out", detector=hand_ahead)
     (problem,) = result.problems
     assert "camera_link" in problem
     assert "'map'" in problem
@@ -168,26 +127,26 @@ def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path):
     assert any(raised)
 
 
-def test_the_camera_itself_can_be_the_fixed_frame(tmp_path):
-    bag = write_bag(tmp_path / "in.mcap", transforms=False)
+def test_the_camera_itself_can_be_the_fixed_frame(tmp_path, write_bag, hand_ahead):
+    bag = write_bag(tmp_path / "in.mcap", links=())
     config = Config(fixed_frame="camera_link")
-    assert replay(bag, tmp_path / "out", config, detector=HandAhead()).problems == ()
+    assert replay(bag, tmp_path / "out", config, detector=hand_ahead).problems == ()
 
 
-def test_scans_without_beams_are_a_problem(tmp_path):
+def test_scans_without_beams_are_a_problem(tmp_path, write_bag, hand_ahead):
     def empty(stamp_ns):
         return Scan(stamp_ns, "laser", 0.0, 0.0, 0.1, 10.0, np.zeros(0))
 
     bag = write_bag(tmp_path / "in.mcap", scan=empty)
-    result = replay(bag, tmp_path / "out", detector=HandAhead())
+    result = replay(bag, tmp_path / "out", detector=hand_ahead)
     assert any("beams" in problem for problem in result.problems)
 
 
-def test_a_truncated_recording_is_replayed_as_far_as_it_goes(tmp_path):
+def test_a_truncated_recording_is_replayed_as_far_as_it_goes(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap", seconds=6)
     content = bag.read_bytes()
     bag.write_bytes(content[: len(content) * 2 // 3])
-    result = replay(bag, tmp_path / "out", detector=HandAhead())
+    result = replay(bag, tmp_path / "out", detector=hand_ahead)
     assert str(bag) in result.problems[0]
     raised = [
         m.data for topic, _, m in read_topics(tmp_path / "out/output.mcap") if "raised" in topic
@@ -195,24 +154,24 @@ def test_a_truncated_recording_is_replayed_as_far_as_it_goes(tmp_path):
     assert 5 < len(raised) < 60
 
 
-def test_a_recording_without_images_and_scans_is_an_error(tmp_path):
+def test_a_recording_without_images_and_scans_is_an_error(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap", images=False, scan=None)
     with pytest.raises(RecordingError, match="no images on /image_raw"):
-        replay(bag, tmp_path / "out", detector=HandAhead())
+        replay(bag, tmp_path / "out", detector=hand_ahead)
 
 
-def test_images_on_another_topic_are_an_error_that_names_it(tmp_path):
+def test_images_on_another_topic_are_an_error_that_names_it(tmp_path, person_ahead, hand_ahead):
     with RecordingWriter(tmp_path / "in.mcap") as writer:
         picture = np.zeros((48, 64, 3), np.uint8)
         writer.write("/front/image", START_NS, CameraImage(START_NS, "camera_link", picture))
         writer.write("/scan", START_NS, person_ahead(START_NS))
     with pytest.raises(RecordingError, match="--image-topic /front/image"):
-        replay(tmp_path / "in.mcap", tmp_path / "out", detector=HandAhead())
+        replay(tmp_path / "in.mcap", tmp_path / "out", detector=hand_ahead)
 
 
-def test_a_recording_of_scans_alone_is_replayed_with_a_remark(tmp_path):
+def test_a_recording_of_scans_alone_is_replayed_with_a_remark(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap", images=False)
-    result = replay(bag, tmp_path / "out", detector=HandAhead())
+    result = replay(bag, tmp_path / "out", detector=hand_ahead)
     assert result.problems == ()
     assert "no images" in result.summary["remarks"][0]
 
@@ -221,11 +180,11 @@ def test_a_recording_of_scans_alone_is_replayed_with_a_remark(tmp_path):
     "name",
     ["oko_slam_wraparound.bag", "leg_tracker__positive_1_extracted.bag", "leg_tracker_demo"],
 )
-def test_real_scan_recordings_replay_without_error(tmp_path, name):
+def test_real_scan_recordings_replay_without_error(tmp_path, name, hand_ahead):
     source = DATA / "scans" / name
     if not source.exists():
         pytest.skip(f"{source.name} is not beside this checkout")
-    assert replay(source, tmp_path, detector=HandAhead()).problems == ()
+    assert replay(source, tmp_path, detector=hand_ahead).problems == ()
 
 
 @pytest.mark.model

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tracker import CameraImage, Config, Hands, Scan
+from tracker import Config, Scan
 from tracker.errors import RecordingError
 from tracker.evaluation.calibration import calibrate
 from tracker.evaluation.recorded_frames import recorded_frames
@@ -19,57 +19,30 @@ START_NS, PERIOD_NS = 1_700_000_000_000_000_000, 100_000_000
 LASER_FROM_CAMERA = RigidTransform.from_planar(-0.1, 0.05, 0.2, z_m=1.0)
 
 
-class HandAhead:
-    """A detector that sees one raised hand in the middle of each image, thumb to the left."""
-
-    def find(self, image):
-        landmarks = np.full((1, 21, 2), image.width / 2)
-        landmarks[:, 4, 0] -= 20.0
-        landmarks[:, 9, 1] -= 20.0
-        one = np.ones(1)
-        return Hands(landmarks, one, one, one.astype(bool), one)
-
-    def reset(self):
-        pass
-
-    def configure(self, config):
-        pass
-
-
 @pytest.fixture
-def bag(tmp_path):
-    """Ten images of a robot with somebody 2 m ahead of its laser."""
-    path = tmp_path / "ahead.mcap"
+def bag(tmp_path, write_bag):
+    """Ten images of a robot with somebody 1.5 m ahead of its laser."""
     links = [
         StampedTransform(0, "map", "laser", RigidTransform.from_planar(3.0, 1.0, 2.0), True),
         StampedTransform(0, "laser", "camera_link", LASER_FROM_CAMERA, True),
     ]
-    angles = np.radians(np.arange(720) / 2 - 180)
-    ranges = np.where(np.abs(np.sin(angles)) * 2.0 < 0.15, np.where(np.cos(angles) > 0, 2, 6), 6)
-    with RecordingWriter(path) as writer:
-        writer.write("/tf_static", START_NS, links)
-        for stamp_ns in range(START_NS, START_NS + 10 * PERIOD_NS, PERIOD_NS):
-            scan = Scan(stamp_ns, "laser", -np.pi, np.radians(0.5), 0.05, 12.0, ranges * 1.0)
-            writer.write("/scan", stamp_ns, scan)
-            pixels = np.zeros((480, 640, 3), np.uint8)
-            writer.write("/image_raw", stamp_ns, CameraImage(stamp_ns, "camera_link", pixels))
-    return path
+    return write_bag(tmp_path / "ahead.mcap", 1.0, links=links)
 
 
-def test_a_recordings_hands_come_with_the_bodies_beside_their_rays(bag):
-    mounted = recorded_sightings(bag, detector=HandAhead())
+def test_a_recordings_hands_come_with_the_bodies_beside_their_rays(bag, hand_ahead):
+    mounted = recorded_sightings(bag, detector=hand_ahead)
     sightings = mounted.sightings
     assert len(sightings) == 10
     assert sorted(sightings.hand) == list(range(10))
     assert sightings.bearing_rad == pytest.approx(np.zeros(10), abs=1e-9)
     assert np.all(sightings.side == 1.0)  # the thumb is on the head's side
-    body = LASER_FROM_CAMERA.inverse().apply([2.06, 0.0, 0.0])[:2]
+    body = LASER_FROM_CAMERA.inverse().apply([1.56, 0.0, 0.0])[:2]
     assert sightings.body_xy_m == pytest.approx(np.tile(body, (10, 1)), abs=0.02)
     assert mounted.laser_from_camera.planar == pytest.approx(LASER_FROM_CAMERA.planar)
 
 
-def test_frames_come_while_the_pipeline_stands_at_them(bag):
-    pipeline = Pipeline(Config(), HandAhead())
+def test_frames_come_while_the_pipeline_stands_at_them(bag, hand_ahead):
+    pipeline = Pipeline(Config(), hand_ahead)
     stamps = [
         result.stamp_ns
         for result in recorded_frames(bag, pipeline)
@@ -78,12 +51,12 @@ def test_frames_come_while_the_pipeline_stands_at_them(bag):
     assert stamps == list(range(START_NS, START_NS + 10 * PERIOD_NS, PERIOD_NS))
 
 
-def test_a_recording_without_pictures_says_so(tmp_path):
+def test_a_recording_without_pictures_says_so(tmp_path, hand_ahead):
     path = tmp_path / "empty.mcap"
     with RecordingWriter(path) as writer:
         writer.write("/scan", START_NS, Scan(START_NS, "laser", 0.0, 0.1, 0.1, 9.0, np.ones(60)))
     with pytest.raises(RecordingError, match="no images"):
-        list(recorded_frames(path, Pipeline(Config(), HandAhead())))
+        list(recorded_frames(path, Pipeline(Config(), hand_ahead)))
 
 
 def test_a_mounting_that_is_off_is_found_in_a_simulated_room():
