@@ -53,11 +53,26 @@ def domain_settings(environment: Mapping[str, str]) -> DomainSettings:
     peers = [peer for peer in environment.get("ROS_STATIC_PEERS", "").split(";") if peer]
     if environment.get("ROS_LOCALHOST_ONLY", "0") not in ("", "0"):
         reach, peers = "LOCALHOST", []
-    parts = [_discovery(reach, peers), environment.get("CYCLONEDDS_URI", "")]
+    own = environment.get("CYCLONEDDS_URI", "")
+    # Cyclone DDS refuses to start when an interface is named twice; a file is not looked into.
+    may_name_interfaces = "NetworkInterface" in own or "file:" in own
+    interfaces = "" if may_name_interfaces else _interfaces(reach, peers)
+    parts = [_discovery(reach, peers, interfaces), own]
     return DomainSettings(int(text), ",".join(part for part in parts if part))
 
 
-def _discovery(reach: str, peers: list[str]) -> str:
+def _interfaces(reach: str, peers: list[str]) -> str:
+    """Where to listen: Cyclone DDS 11 is deaf to greetings on an interface it does not use.
+
+    By itself it uses the network card alone, and ROS 2 greets this machine on the loopback.
+    """
+    if reach != "LOCALHOST":
+        return ""
+    beyond = '<NetworkInterface autodetermine="true"/>' if peers else ""
+    return f'<Interfaces><NetworkInterface address="127.0.0.1"/>{beyond}</Interfaces>'
+
+
+def _discovery(reach: str, peers: list[str], interfaces: str) -> str:
     if reach == "SYSTEM_DEFAULT":
         return ""
     multicast = "" if reach == "SUBNET" else "<AllowMulticast>false</AllowMulticast>"
@@ -76,6 +91,6 @@ def _discovery(reach: str, peers: list[str]) -> str:
             greeted = "".join(f"<Peer address={quoteattr(host)}/>" for host in hosts)
             discovery += f"<Peers>{greeted}</Peers>"
     return (
-        f"<CycloneDDS><Domain><General>{multicast}</General>"
+        f"<CycloneDDS><Domain><General>{interfaces}{multicast}</General>"
         f"<Discovery>{discovery}</Discovery></Domain></CycloneDDS>"
     )

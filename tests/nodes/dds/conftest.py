@@ -23,11 +23,6 @@ from tracker.messages.types import build, deserialize, serialize
 ROOT = Path(__file__).parents[3]
 CLIENT = Profile(True, False, 10, "ROS 2's default for services.")
 
-LOOPBACK = (
-    '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces>'
-    "</General></Domain></CycloneDDS>"
-)
-
 
 @pytest.fixture
 def domain(monkeypatch):
@@ -43,9 +38,8 @@ def domain(monkeypatch):
             break
     monkeypatch.setenv("ROS_DOMAIN_ID", str(number))
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
-    monkeypatch.delenv("ROS_LOCALHOST_ONLY", raising=False)
-    monkeypatch.delenv("ROS_STATIC_PEERS", raising=False)
+    for name in ("CYCLONEDDS_URI", "ROS_LOCALHOST_ONLY", "ROS_STATIC_PEERS"):
+        monkeypatch.delenv(name, raising=False)
     yield number
     claim.close()
 

@@ -26,6 +26,35 @@ def test_localhost_greets_this_machine_without_multicast():
     assert [peer.get("address") for peer in tree.iter("Peer")] == ["localhost"]
 
 
+def interfaces(environment):
+    tree = xml({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **environment})
+    return [item.attrib for item in tree.iter("NetworkInterface")]
+
+
+LOOPBACK = {"address": "127.0.0.1"}
+
+
+def test_localhost_listens_on_the_loopback_where_ros_2_greets_it():
+    assert interfaces({}) == [LOOPBACK]
+    peers = {"ROS_STATIC_PEERS": "10.0.0.2"}
+    assert interfaces(peers) == [LOOPBACK, {"autodetermine": "true"}]
+    assert interfaces({**peers, "ROS_LOCALHOST_ONLY": "1"}) == [LOOPBACK]
+    assert interfaces({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}) == []
+
+
+@pytest.mark.parametrize(
+    ("uri", "named"),
+    [
+        ("file:///etc/cyclone.xml", []),
+        ('<General><Interfaces><NetworkInterface name="lo"/></Interfaces></General>', []),
+        ("<Internal><SocketReceiveBufferSize min='4MB'/></Internal>", [LOOPBACK]),
+    ],
+    ids=["in a file", "named", "another setting"],
+)
+def test_interfaces_are_left_to_a_user_who_may_have_named_them(uri, named):
+    assert interfaces({"CYCLONEDDS_URI": uri}) == named
+
+
 def test_localhost_only_wins_over_range_and_peers():
     tree = xml({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "10.0.0.2"})
     assert [peer.get("address") for peer in tree.iter("Peer")] == ["localhost"]
