@@ -136,7 +136,7 @@ class DdsHandDetector:
             return _trigger(success, message)
 
         def reset(_: Any) -> Any:
-            self._core.reset("asked to")
+            self._core.reset("as asked by ~/reset")
             return _trigger(True, "everybody is forgotten")
 
         def enable(request: Any) -> Any:
