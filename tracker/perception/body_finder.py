@@ -14,9 +14,9 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, ImageArray, IntArray
 from tracker.perception.bodies import Bodies, one_row_each
+from tracker.perception.known_bodies import KnownBodies
 from tracker.perception.models import ModelStore
 from tracker.perception.palm_search import Window
-from tracker.perception.pictures import continues
 from tracker.perception.pose_landmarks import PoseReader
 from tracker.perception.pose_rules import judge_arms
 from tracker.perception.pose_search import PoseSearch, regions_from_alignment
@@ -46,7 +46,7 @@ class Reader(Protocol):
         ...
 
 
-class BodyFinder:
+class BodyFinder(KnownBodies):
     """MediaPipe's pose models over strips, people followed between the searches.
 
     Args:
@@ -62,15 +62,9 @@ class BodyFinder:
     def __init__(
         self, searcher: Searcher, reader: Reader, config: Config, *, everyone: bool
     ) -> None:
+        super().__init__(config, everyone=everyone)
         self._searcher = searcher
         self._reader = reader
-        self._config = config
-        self._everyone = everyone
-        self._last: CameraImage | None = None
-        self._images_seen = self._searches = 0
-        self._known = Bodies.none()
-        self._alignment_px: FloatArray = np.zeros((0, 2, 2))
-        self._waiting = Regions.none()  # found, but not yet looked at
 
     @staticmethod
     def open(config: Config, store: ModelStore, *, everyone: bool) -> BodyFinder:
@@ -88,33 +82,12 @@ class BodyFinder:
             everyone=everyone,
         )
 
-    def find(self, image: CameraImage) -> Bodies:
-        """Everybody known; those looked at in this very image have age 0.
-
-        A stamp that jumps back, another frame_id or another size of the image starts anew.
-        """
-        if self._last is None or not continues(self._last, image):
-            self.reset()
-        passed_ns = image.stamp_ns - (self._last or image).stamp_ns
-        self._last = image
-        self._known = self._known.grown_older(passed_ns / 1e9)
-        if self._everyone or self._images_seen % self._config.pose_search_period == 0:
-            self._search(image)
-        self._images_seen += 1
-        self._look(image)
-        return self._known
-
     def reset(self) -> None:
         """Forget everybody."""
-        self._last = None
-        self._images_seen = self._searches = 0
-        self._known = Bodies.none()
-        self._alignment_px = np.zeros((0, 2, 2))
-        self._waiting = Regions.none()
-
-    def configure(self, config: Config) -> None:
-        """Take over changed parameters, from the next image on; the models stay."""
-        self._config = config
+        super().reset()
+        self._searches = 0
+        self._alignment_px: FloatArray = np.zeros((0, 2, 2))
+        self._waiting = Regions.none()  # found, but not yet looked at
 
     def _search(self, image: CameraImage) -> None:
         """Put the people of the next strip on the waiting list, unless they are known."""
@@ -128,25 +101,28 @@ class BodyFinder:
         room = max(self._config.max_hands - len(known), 0)
         self._waiting = Regions.concatenate(self._waiting, found[is_new][:room])
 
-    def _look(self, image: CameraImage) -> None:
+    def _look(self, image: CameraImage, known: Bodies, is_due: bool) -> Bodies:
         """Read as many people as the budget allows: new ones, then those most due."""
+        if is_due:
+            self._search(image)
         config = self._config
         reads = config.max_hands if self._everyone else config.pose_reads_per_frame
         new, self._waiting = self._waiting[:reads], self._waiting[reads:]
-        due = self._most_due()[: reads - len(new)]
-        others = np.setdiff1d(np.arange(len(self._known)), due)
+        due = self._most_due(known)[: reads - len(new)]
+        others = np.setdiff1d(np.arange(len(known)), due)
         regions = Regions.concatenate(new, regions_from_alignment(self._alignment_px[due]))
         bodies, alignment_px = self._reader.read(image.bgr, regions)
-        known = Bodies.concatenate(bodies, self._known[others])
+        known = Bodies.concatenate(bodies, known[others])
         alignment_px = np.concatenate([alignment_px, self._alignment_px[others]])
         stays = np.isfinite(alignment_px).all(axis=(1, 2)) & (
             known.score >= config.pose_confidence
         )
         known, alignment_px = known[stays], alignment_px[stays]
         once = one_row_each(known)
-        self._known, self._alignment_px = known[once], alignment_px[once]
+        self._alignment_px = alignment_px[once]
+        return known[once]
 
-    def _most_due(self) -> IntArray:
-        raised, _ = judge_arms(self._known, self._config)
-        urgency = self._known.age_s * np.where(raised.any(axis=1), _RAISED_URGENCY, 1.0)
+    def _most_due(self, known: Bodies) -> IntArray:
+        raised, _ = judge_arms(known, self._config)
+        urgency = known.age_s * np.where(raised.any(axis=1), _RAISED_URGENCY, 1.0)
         return np.argsort(-urgency, kind="stable")

@@ -15,8 +15,8 @@ from tracker.config import Config
 from tracker.containers import CameraImage, ImageArray
 from tracker.errors import ModelFileError
 from tracker.perception.bodies import Bodies, one_row_each
+from tracker.perception.known_bodies import KnownBodies
 from tracker.perception.palm_search import Window
-from tracker.perception.pictures import continues
 from tracker.perception.pose_layouts import PoseLayout, recognize
 from tracker.perception.sessions import open_file
 from tracker.perception.strips import upright_strips
@@ -106,7 +106,7 @@ class PoseFile:
         return replace(bodies, points_px=points / per_px + (left, top))
 
 
-class PoseFileFinder:
+class PoseFileFinder(KnownBodies):
     """A pose model of the user's own as `BodyDetector`.
 
     Models for one person look at one upright strip after the other, the rest at whole pictures.
@@ -118,12 +118,8 @@ class PoseFileFinder:
     """
 
     def __init__(self, model: PoseFile, config: Config, *, everyone: bool) -> None:
+        super().__init__(config, everyone=everyone)
         self._model = model
-        self._config = config
-        self._everyone = everyone
-        self._last: CameraImage | None = None
-        self._images_seen = self._looks = 0
-        self._known = Bodies.none()
 
     @staticmethod
     def open(path: Path, config: Config, *, everyone: bool) -> PoseFileFinder:
@@ -135,40 +131,24 @@ class PoseFileFinder:
         """
         return PoseFileFinder(PoseFile.open(path, config), config, everyone=everyone)
 
-    def find(self, image: CameraImage) -> Bodies:
-        """Everybody known; those looked at in this very image have age 0.
-
-        A stamp that jumps back, another frame_id or another size of the image starts anew.
-        """
-        if self._last is None or not continues(self._last, image):
-            self.reset()
-        passed_ns = image.stamp_ns - (self._last or image).stamp_ns
-        self._last = image
-        known = self._known.grown_older(passed_ns / 1e9)
-        known = known[known.age_s <= _FORGET_AFTER_S]
-        if self._everyone or self._images_seen % self._config.pose_search_period == 0:
-            found = self._look(image)
-            known = Bodies.concatenate(found, known[:0] if self._sees_all else known)
-            known = known[one_row_each(known)]
-        self._images_seen += 1
-        self._known = known
-        return known
-
     def reset(self) -> None:
         """Forget everybody."""
-        self._last = None
-        self._images_seen = self._looks = 0
-        self._known = Bodies.none()
+        super().reset()
+        self._looks = 0
 
-    def configure(self, config: Config) -> None:
-        """Take over changed parameters, from the next image on; the model stays."""
-        self._config = config
+    def _look(self, image: CameraImage, known: Bodies, is_due: bool) -> Bodies:
+        known = known[known.age_s <= _FORGET_AFTER_S]
+        if is_due:
+            found = self._seen_now(image)
+            known = Bodies.concatenate(found, known[:0] if self._sees_all else known)
+            known = known[one_row_each(known)]
+        return known
 
     @property
     def _sees_all(self) -> bool:
         return not self._model.layout.one_person
 
-    def _look(self, image: CameraImage) -> Bodies:
+    def _seen_now(self, image: CameraImage) -> Bodies:
         windows: list[Window] = [(0, 0, image.width, image.height)]
         if not self._sees_all:
             windows = upright_strips(image.width, image.height)
