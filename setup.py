@@ -23,6 +23,7 @@ setup(
         "test": [
             "pytest>=8.2,<10",
             "pytest-xdist>=3.5,<4",
+            "pytest-timeout>=2.3,<3",
             "hypothesis>=6.100,<7",
             "filterpy>=1.4.5,<3",
             "ai-edge-litert>=1.2,<3",
