@@ -43,7 +43,7 @@ setup(
     entry_points={
         "console_scripts": [
             "raised-hand = tracker.cli.app:main",
-            "raised-hand-dds = nodes.dds_hand_detector:main",
+            "raised-hand-dds = nodes.raised_hand_dds:main",
             "hand_detector = nodes.hand_detector:main",
             "lifecycle_hand_detector = nodes.lifecycle_hand_detector:main",
             "perception.py = nodes.hand_detector:main",
