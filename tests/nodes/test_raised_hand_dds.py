@@ -3,7 +3,12 @@
 import subprocess
 import sys
 
-WITHOUT = "import sys; sys.modules['cyclonedds'] = None; import nodes.raised_hand_dds as it; it.main()"
+WITHOUT = """
+import sys
+sys.modules["cyclonedds"] = None
+from nodes.raised_hand_dds import main
+main()
+"""
 
 
 def test_without_its_extra_the_command_names_it_in_one_line():

@@ -33,14 +33,18 @@ def dask_cluster(address: str, *, patience_s: float = 30.0) -> Iterator[Executor
     """
     try:
         from distributed import Client, KilledWorker
+        from distributed.comm import get_address_host_port
     except ModuleNotFoundError as error:
         raise ConfigError(
             f"{address} needs Dask: pip install '{_PACKAGE}[cluster]', here and on its workers."
         ) from error
-    try:
-        client = Client(address.replace("dask://", "tcp://", 1), timeout=patience_s)
+    place = address.replace("dask://", "tcp://", 1)
+    try:  # before there is a client, whose remains may block the next one
+        get_address_host_port(place, strict=True)
     except ValueError as error:
         raise ConfigError(f"{address} is no address of a Dask scheduler ({error}).") from error
+    try:
+        client = Client(place, timeout=patience_s)
     except (OSError, TimeoutError) as error:
         raise WorkerError(
             f"{address}: no Dask scheduler answers; start `dask scheduler`."

@@ -106,7 +106,13 @@ def test_assignments_are_one_to_one_and_the_best_there_are(rows, columns):
 @needs_numba
 @pytest.mark.parametrize(("rows", "columns"), [(1, 1), (3, 5), (5, 5), (8, 4)])
 def test_compiled_assignments_are_the_best_there_are(rows, columns):
-    from tracker.tracking.compiled.association import assign
+    from numba import njit
+
+    from tracker.tracking.compiled import association
+
+    @njit
+    def assign(gain, row_of, is_taken):  # loops are called by compiled functions alone
+        association.assign(gain, row_of, is_taken)
 
     gains = random_gains(np.random.default_rng(rows), rows, columns)
     for gain in np.moveaxis(gains, -1, 0):

@@ -11,7 +11,10 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def loop(function: _Function) -> _Function:
-    """Compile it for others to call; without a way in from Python that takes a third less time."""
+    """Compile it for others to call; without a way in from Python that takes a third less time.
+
+    Python that calls it nevertheless crashes.
+    """
     options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     compiled: _Function = njit(error_model="numpy", **options)(function)
     return compiled
