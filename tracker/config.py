@@ -244,9 +244,19 @@ class Config(BaseModel):
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
     hand_head_clearance: float = _parameter(
-        0.4, "A hand whose fingers' roots are nearer than this to its owner's nose, eyes or ears "
+        0.45, "A hand whose fingers' roots are nearer than this to its owner's nose, eyes or ears "
         "is not up, but at the head.",
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
+    )  # fmt: skip
+    owner_hand_px: float = _parameter(
+        64.0, "`pose_opinion: veto`: a hand shorter than this (at 1.3 m, with the default camera: "
+        "nearer people may not fit into the picture) whose owner is not found counts as raised "
+        "...",
+        unit="px", group="pose", live=True, ge=0.0, le=10000.0,
+    )  # fmt: skip
+    unowned_patience_s: float = _parameter(
+        2.0, "... once it has been up for so long; an owner's pose decides at once.",
+        unit="s", group="pose", live=True, ge=0.0, le=3600.0,
     )  # fmt: skip
     hand_shoulder_rise_min: float = _parameter(
         -0.05, "A hand whose fingers' roots are not so far above its owner's shoulders is not up, "

@@ -16,6 +16,7 @@ _LAYOUT = {
     "raised": (FLAGS, ()),
     "raise_measure": (NUMBERS, ()),
     "torso_px": (NUMBERS, (2,)),
+    "pending": (FLAGS, ()),
 }
 
 
@@ -34,6 +35,8 @@ class Hands:
             `image` rule, palm lengths for the `palm` rule).
         torso_px: Shape (H, 2): the middle of shoulders and hips of whose hand it is; NaN where
             that is not known. None means that of no hand.
+        pending: Shape (H,), bool: up by the rule, but too unsure or too short a time to count as
+            raised unless its owner's body says so. None means no hand.
     """
 
     landmarks_px: FloatArray
@@ -42,10 +45,13 @@ class Hands:
     raised: BoolArray
     raise_measure: FloatArray
     torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
+    pending: BoolArray = None  # type: ignore[assignment]  # False takes its place
 
     def __post_init__(self) -> None:
         if self.torso_px is None:
             object.__setattr__(self, "torso_px", np.full((len(self.landmarks_px), 2), np.nan))
+        if self.pending is None:
+            object.__setattr__(self, "pending", np.zeros(len(self.landmarks_px), dtype=bool))
         check_rows(self, len(self.landmarks_px), _LAYOUT)
 
     def __len__(self) -> int:

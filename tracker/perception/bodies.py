@@ -18,6 +18,9 @@ VISIBLE_FROM = 0.4
 #: Grown people's shoulders, joint to joint, against their trunk from shoulders to hips: seen from
 #: the side a person keeps the trunk's length (guess from anthropometric tables).
 _SHOULDERS_PER_TRUNK = 0.7
+#: A nose so far above the shoulders, in their widths, is where noses are: of 3,000 looks at drawn
+#: people who sit or stand 99 in 100 have it above 0.32, and people who bow keep most of it.
+_NOSE_RISE = 0.2
 #: Bodies whose points are closer than this, on average, are one person's (guess).
 _SAME_BODY_SHOULDERS = 0.5
 
@@ -115,6 +118,14 @@ class Bodies:
         """Shape (P, 17): points that may be relied upon."""
         finite = np.isfinite(self.points_px).all(axis=-1)
         return np.asarray(finite & (self.visibility >= VISIBLE_FROM))
+
+    @property
+    def is_misread(self) -> BoolArray:
+        """Shape (P,): bodies with the nose at the shoulders, as seen in half of a person."""
+        joints = [Joint.NOSE, *SHOULDERS]
+        rise_px = self.points_px[:, SHOULDERS, 1].mean(axis=1) - self.points_px[:, Joint.NOSE, 1]
+        seen = self.is_visible[:, joints].all(axis=1)
+        return np.asarray(seen & (rise_px < _NOSE_RISE * self.shoulder_px))
 
     @property
     def torso_px(self) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol, runtime_checkable
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
+from tracker.containers import CameraImage, FloatArray, Hands, ImageArray, PerceptionWork
 
 
 @runtime_checkable
@@ -36,6 +36,14 @@ class PiecewiseDetector(HandDetector, Protocol):
     @property
     def work(self) -> PerceptionWork:
         """What the last image cost."""
+        ...
+
+    @property
+    def seen(self) -> ImageArray | None:
+        """The last image as the models saw it, shape (height, width, 3); None before the first.
+
+        Dark and noisy pictures are cleared; other models may look at what came of it.
+        """
         ...
 
     def expect(self, boxes_px: FloatArray) -> None:

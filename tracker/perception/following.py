@@ -93,6 +93,7 @@ class HandFollower:
         self._rows = np.zeros(0, dtype=np.int64)
         self._last: CameraImage | None = None
         self.work = PerceptionWork()
+        self.seen: ImageArray | None = None
 
     def step(
         self,
@@ -125,7 +126,7 @@ class HandFollower:
         if budget is not None:
             places = max(1, min(places, budget - len(regions)))
         began_s = time.perf_counter()
-        bgr = self._clearer.clear(image.bgr)
+        bgr = self.seen = self._clearer.clear(image.bgr)
         searches = self._searches(bgr, regions, expected_px, config, places if room else 0)
         hands, palms = self._reader.read_beside(bgr, regions, searches)
         searched_s = time.perf_counter()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
+from tracker.containers import CameraImage, FloatArray, Hands, ImageArray, PerceptionWork
 from tracker.perception.following import HandFollower
 from tracker.perception.landmarks import LandmarkReader
 from tracker.perception.models import ModelStore
@@ -59,6 +59,11 @@ class HandFinder:
         """What the last image cost."""
         return self._follower.work
 
+    @property
+    def seen(self) -> ImageArray | None:
+        """The last image as the models saw it, shape (height, width, 3); None before the first."""
+        return self._follower.seen
+
     def find(self, image: CameraImage) -> Hands:
         """Every known hand of the image, and those that the places searched in it hold.
 
@@ -67,10 +72,10 @@ class HandFinder:
         """
         expected_px, self._expected_px = self._expected_px, _NOWHERE
         found, last_rows = self._follower.step(image, self._config, expected_px, self._budget)
-        raised, measure = self._memory.judge(
+        raised, measure, pending = self._memory.judge(
             image.stamp_ns, found, last_rows, (image.width, image.height), self._config
         )
-        return Hands(found.points_px, found.score, found.right, raised, measure)
+        return Hands(found.points_px, found.score, found.right, raised, measure, pending=pending)
 
     def reset(self) -> None:
         """Forget the hands of earlier images."""

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands, ImageArray
+from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, ImageArray
 from tracker.perception.bodies import Bodies, one_row_each
 from tracker.perception.models import ModelStore
 from tracker.perception.palm_search import Window
@@ -43,11 +43,12 @@ Look = Callable[[ImageArray, Window], Bodies]
 
 @dataclass(frozen=True, slots=True)
 class _Question:
-    """A hand that was asked about: where, when, and how many windows were tried."""
+    """A hand that was asked about: where, when, without owner since when, windows tried."""
 
     wrist_px: FloatArray
     reach_px: float
     stamp_ns: int
+    unowned_ns: int
     tries: int
 
 
@@ -86,11 +87,26 @@ class OwnerFinder:
             for question in self._questions
             if image.stamp_ns - question.stamp_ns <= _FORGET_AFTER_S * 1e9
         ]
-        raised = hands[hands.raised]
-        due_s = [self._due_s(hand, image.stamp_ns) for hand in rows_of(raised)]
+        up = hands[hands.raised | hands.pending]
+        due_s = [self._due_s(hand, image.stamp_ns) for hand in rows_of(up)]
         if max(due_s, default=0.0) > 0.0:
-            self._ask(image, raised[[int(np.argmax(due_s))]])
+            self._ask(image, up[[int(np.argmax(due_s))]])
         return self._known
+
+    def still_looking(self, hands: Hands, patience_s: FloatArray) -> BoolArray:
+        """Whose owners are neither known nor given up?
+
+        Args:
+            hands: As told to `expect` for the last image.
+            patience_s: Shape (H,): for how long each is looked for, beyond every window once.
+
+        Returns:
+            Shape (H,).
+        """
+        return np.array(
+            [self._is_open(*pair) for pair in zip(rows_of(hands), patience_s, strict=True)],
+            dtype=bool,
+        )
 
     def reset(self) -> None:
         """Forget everybody."""
@@ -107,8 +123,16 @@ class OwnerFinder:
         if question is None:
             return np.inf
         waited_s = (stamp_ns - question.stamp_ns) / 1e9
-        is_open = question.tries < len(WINDOW_HANDS) and find_owners(hand, self._known)[0] < 0
-        return waited_s if is_open else waited_s - _AGAIN_S
+        return waited_s if self._is_open(hand) else waited_s - _AGAIN_S
+
+    def _is_open(self, hand: Hands, patience_s: float = 0.0) -> bool:
+        """Whether its owner is unknown, and was not looked for in every window and long enough."""
+        question = self._asked(hand)
+        if question is None or self._last is None:
+            return True
+        looked_s = (self._last.stamp_ns - question.unowned_ns) / 1e9
+        is_given_up = question.tries >= len(WINDOW_HANDS) and looked_s >= patience_s
+        return not is_given_up and bool(find_owners(hand, self._known)[0] < 0)
 
     def _asked(self, hand: Hands) -> _Question | None:
         apart_px = [np.linalg.norm(hand.wrist_px[0] - item.wrist_px) for item in self._questions]
@@ -122,11 +146,15 @@ class OwnerFinder:
         tries = 0 if last is None else last.tries
         window = window_around(hand, WINDOW_HANDS[tries % len(WINDOW_HANDS)], image)
         seen = Bodies.concatenate(self._look(image.bgr, window), self._known)
+        seen = seen[~seen.is_misread]
         self._known = seen[one_row_each(seen)]
-        # The window that showed the owner is tried first the next time.
-        tries += int(find_owners(hand, self._known)[0] < 0)
+        is_unowned = bool(find_owners(hand, self._known)[0] < 0)
+        tries += int(is_unowned)  # the window that showed the owner is tried first the next time
+        unowned_ns = image.stamp_ns if last is None or not is_unowned else last.unowned_ns
         reach_px = float(hand.length_px[0])
-        self._questions.append(_Question(hand.wrist_px[0], reach_px, image.stamp_ns, tries))
+        self._questions.append(
+            _Question(hand.wrist_px[0], reach_px, image.stamp_ns, unowned_ns, tries)
+        )
 
 
 def window_around(hand: Hands, side_hands: float, image: CameraImage) -> Window:

@@ -18,11 +18,13 @@ class RaiseMemory:
     A hand goes up by `palm_raised_threshold`, upright and with a sure landmark score, and stays up
     while it keeps to the milder bounds: single ones would flicker. What looks like
     a small raised hand for a frame is often none, so that a small one counts once it has been up
-    for `small_hand_patience_s`.
+    for `small_hand_patience_s`. Until then, and while its score is unsure, it is pending: the
+    body whose hand it is may know.
     """
 
     def __init__(self) -> None:
         self._up_since_ns = np.zeros(0, dtype=np.int64)
+        self._rose = np.zeros(0, dtype=bool)
 
     def judge(
         self,
@@ -31,7 +33,7 @@ class RaiseMemory:
         last_rows: IntArray,
         image_size: tuple[int, int],
         config: Config,
-    ) -> tuple[BoolArray, FloatArray]:
+    ) -> tuple[BoolArray, FloatArray, BoolArray]:
         """Verdict on each hand.
 
         Args:
@@ -42,13 +44,15 @@ class RaiseMemory:
             config: The raise rule and its thresholds.
 
         Returns:
-            Verdict of shape (H,), and the measure of shape (H,) that was compared.
+            Verdict of shape (H,), the measure of shape (H,) that was compared, and which hands
+            are pending, shape (H,).
         """
         points = hands.points_px
         rises, measure = judge_raised(points, image_size, config)
         if config.raise_rule == "image":
             self._up_since_ns = np.full(len(hands), _NEVER_NS)
-            return rises, measure
+            self._rose = np.zeros(len(hands), dtype=bool)
+            return rises, measure, self._rose
         lean_max_rad = np.radians(config.lowered_lean_min_deg)
         stays, _ = palm_rule(points, config.palm_lowered_threshold, lean_max_rad)
         since_ns = np.append(self._up_since_ns, _NEVER_NS)[last_rows]  # row -1 has never been up
@@ -57,8 +61,11 @@ class RaiseMemory:
         self._up_since_ns = np.where(is_up, np.minimum(since_ns, stamp_ns), _NEVER_NS)
         length = np.linalg.norm(points[:, MIDDLE_TIP] - points[:, WRIST], axis=-1)
         patience_s = np.where(length < config.small_hand_px, config.small_hand_patience_s, 0.0)
-        return is_up & (stamp_ns - self._up_since_ns >= patience_s * 1e9), measure
+        raised = is_up & (stamp_ns - self._up_since_ns >= patience_s * 1e9)
+        self._rose = np.where(np.append(self._rose, False)[last_rows], stays, rises)
+        return raised, measure, self._rose & ~raised
 
     def reset(self) -> None:
         """Forget all hands."""
         self._up_since_ns = np.zeros(0, dtype=np.int64)
+        self._rose = np.zeros(0, dtype=bool)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
+from tracker.containers import CameraImage, FloatArray, Hands, ImageArray, PerceptionWork
 from tracker.perception.bodies import Bodies
 from tracker.perception.body_detector import BodyDetector
 from tracker.perception.detector import HandDetector, PiecewiseDetector
@@ -45,6 +45,11 @@ class SecondOpinion:
         """What the hands of the last image cost; the bodies are not counted."""
         return self._hands.work if isinstance(self._hands, PiecewiseDetector) else PerceptionWork()
 
+    @property
+    def seen(self) -> ImageArray | None:
+        """The last image as the hands' models saw it, where they tell."""
+        return self._hands.seen if isinstance(self._hands, PiecewiseDetector) else None
+
     def expect(self, boxes_px: FloatArray) -> None:
         """Where raised hands are likelier; told to a hand detector that can be told."""
         if isinstance(self._hands, PiecewiseDetector):
@@ -60,9 +65,16 @@ class SecondOpinion:
         hands = self._hands.find(image)
         if self._config.raise_rule == "image" and self._config.pose_opinion == "veto":
             return hands  # the specification's rule stays what it is
+        if self.seen is not None:
+            image = replace(image, bgr=self.seen)
         if isinstance(self._bodies, OwnerFinder):
             self._bodies.expect(hands)
         bodies = self._bodies.find(image)
+        if isinstance(self._bodies, OwnerFinder):
+            is_small = hands.length_px < self._config.owner_hand_px
+            patience_s = np.where(is_small, self._config.unowned_patience_s, 0.0)
+            is_waiting = self._bodies.still_looking(hands, patience_s)
+            hands = replace(hands, raised=hands.raised & ~is_waiting)
         return weigh_opinions(hands, bodies, (image.width, image.height), self._config)
 
     def reset(self) -> None:
@@ -93,7 +105,8 @@ def weigh_opinions(
         config: `pose_opinion` and what it needs.
 
     Returns:
-        The same hands, those at their owner's head or below the shoulders not raised. With
+        The same hands, those at their owner's head or below the shoulders not raised, pending ones
+        raised if they are the hands of somebody and neither. With
         `pose_opinion: full` they have their owners' torsos, and after them comes a schematic hand
         for each arm that is up in this very image and has none. A look at one hand alone, as with
         `veto`, may take a neighbor for its owner, and where the hand is shall not hang on that.
@@ -102,7 +115,8 @@ def weigh_opinions(
     owner = find_owners(hands, bodies)
     refused = hands_at_head(hands, bodies, owner, config.hand_head_clearance)
     refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
-    hands = replace(hands, raised=hands.raised & ~refused)
+    vouched = hands.pending & (owner >= 0)
+    hands = replace(hands, raised=(hands.raised | vouched) & ~refused)
     if config.pose_opinion != "full":
         return hands
     torso = np.full((len(hands), 2), np.nan)

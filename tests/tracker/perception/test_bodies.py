@@ -28,6 +28,13 @@ def test_somebody_sideways_is_measured_by_the_trunk(body):
     np.testing.assert_allclose(sideways.shoulder_px, [0.7 * 56.0])
 
 
+def test_a_nose_at_the_shoulders_is_misread(body):
+    assert body().is_misread.tolist() == [False]
+    assert body(nose=(200, 91)).is_misread.tolist() == [False]
+    assert body(nose=(200, 93)).is_misread.tolist() == [True]
+    assert body(nose=None).is_misread.tolist() == [False]
+
+
 def test_shoulders_on_one_spot_are_no_yardstick(body):
     flat = body(left_shoulder=(200, 100), right_shoulder=(200, 100), left_hip=None)
     assert np.isnan(flat.shoulder_px).all()

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -46,6 +48,48 @@ def test_the_owner_of_a_raised_hand_is_known_in_the_same_image(upright_hand, bod
     watcher = Watcher(body(**UP))
     bodies = look(watcher, upright_hand((148, 70)))
     assert bodies.age_s.tolist() == [0.0]
+
+
+def test_the_owner_of_a_pending_hand_is_looked_for_too(upright_hand, body):
+    pending = replace(upright_hand((148, 70), raised=False), pending=[True])
+    assert len(look(Watcher(body(**UP)), pending)) == 1
+
+
+def test_a_body_that_was_misread_is_nobodys_owner(upright_hand, body):
+    watcher = Watcher(body(**UP, nose=(200, 98)))
+    assert len(look(watcher, upright_hand((148, 70)), images=3)) == 0
+
+
+def looking(watcher, hands, images, patience_s=0.0):
+    """Whether the owner of one hand is still looked for, image after image."""
+    finder = OwnerFinder(watcher)
+    answer = []
+    for number in range(images):
+        finder.expect(hands)
+        finder.find(image(number))
+        answer += finder.still_looking(hands, np.array([patience_s])).tolist()
+    return answer
+
+
+def test_an_owner_is_looked_for_until_known_or_in_every_window_and_long_enough(upright_hand, body):
+    hand, nobody = upright_hand((148, 70)), Watcher(Bodies.none())
+    assert looking(Watcher(body(**UP)), hand, 2) == [False, False]
+    assert looking(nobody, hand, 4) == [True, True, False, False]
+    assert looking(nobody, hand, 8, patience_s=0.6) == [True] * 6 + [False] * 2
+
+
+def test_patience_begins_when_the_owner_is_lost(upright_hand, body):
+    watcher, hand = Watcher(body(**UP)), upright_hand((148, 70))
+    finder, answer = OwnerFinder(watcher), []
+    for number in range(40):
+        watcher.bodies = body(**UP) if number < 10 else Bodies.none()
+        finder.expect(hand)
+        finder.find(image(number))
+        answer += finder.still_looking(hand, np.array([1.0])).tolist()
+    lost, given_up = answer.index(True), len(answer) - answer[::-1].index(True)
+    assert 10 < lost <= 17  # what was seen counts for a second
+    assert given_up - lost <= 10
+    assert all(answer[lost:given_up])
 
 
 def test_the_window_shows_so_many_hands_around_the_wrist():

@@ -56,6 +56,26 @@ def test_a_small_hand_counts_once_it_has_been_up_for_a_while():
     assert verdicts(small) == [False, False, False, True, True, True]
 
 
+def pending(hands):
+    """Of one followed hand, image after image."""
+    memory = RaiseMemory()
+    rows = [-1] + [0] * (len(hands) - 1)
+    return [
+        bool(memory.judge(frame * PERIOD_NS, one, np.array([row]), SIZE, CONFIG)[2][0])
+        for frame, (one, row) in enumerate(zip(hands, rows, strict=True))
+    ]
+
+
+def test_an_unsure_hand_that_is_up_is_pending_until_it_goes_down():
+    unsure = hand(1.8, score=0.6)
+    assert pending([unsure, hand(1.0, score=0.6), hand(0.8, score=0.6)]) == [True, True, False]
+    assert pending([hand(1.0, score=0.6), hand(1.8)]) == [False, False]
+
+
+def test_a_small_hand_is_pending_until_it_counts():
+    assert pending([hand(1.8, palm_px=10.0)] * 5) == [True, True, True, False, False]
+
+
 def test_a_small_hand_that_goes_down_begins_anew():
     up, down = hand(1.8, palm_px=10.0), hand(0.5, palm_px=10.0)
     assert verdicts([up, up, down, up, up, up, up])[3:] == [False, False, False, True]
@@ -72,7 +92,7 @@ def test_memories_follow_hands_that_change_rows():
     both = Landmarks.concatenate(between, up)
     memory.judge(0, both, np.array([-1, -1]), SIZE, CONFIG)
     again = Landmarks.concatenate(between, between)
-    raised, _ = memory.judge(PERIOD_NS, again, np.array([1, 0]), SIZE, CONFIG)
+    raised, _, _ = memory.judge(PERIOD_NS, again, np.array([1, 0]), SIZE, CONFIG)
     assert raised.tolist() == [True, False]
 
 

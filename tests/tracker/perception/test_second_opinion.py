@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -36,6 +38,60 @@ def test_a_raised_hand_beside_the_head_stays_and_may_learn_of_its_torso(
 def test_a_hand_that_gestures_before_the_chest_is_not_raised(body, upright_hand, opinion):
     answer = weigh(upright_hand((160, 115)), body(right_wrist=(160, 115)), opinion)
     assert answer.raised.tolist() == [False]
+
+
+def unsure(hands):
+    return replace(hands, raised=[False], pending=[True])
+
+
+def test_a_pending_hand_is_raised_where_its_owners_pose_agrees(body, upright_hand):
+    hand = unsure(upright_hand((148, 70)))
+    assert weigh(hand, body(**UP), "veto").raised.tolist() == [True]
+    assert weigh(hand, Bodies.none(), "veto").raised.tolist() == [False]
+
+
+def test_a_pending_hand_at_its_owners_ear_is_not_raised(body, upright_hand):
+    answer = weigh(unsure(upright_hand((183, 78))), body(**PHONING), "veto")
+    assert answer.raised.tolist() == [False]
+
+
+def raised_after(hand, look, config, images=30):
+    """Images until it counts; None where it does not."""
+    opinion = SecondOpinion(Always(hand), OwnerFinder(look), config)
+    for number in range(images):
+        image = CameraImage(number * 100_000_000, "", np.zeros((480, 640, 3), np.uint8))
+        if opinion.find(image).raised.any():
+            return number
+    return None
+
+
+def test_a_hand_waits_until_its_owner_was_looked_for_in_every_window(body, upright_hand):
+    config = Config(owner_hand_px=0.0)
+    hand = upright_hand((148, 70))
+    assert raised_after(hand, lambda bgr, window: body(**UP), config) == 0
+    assert raised_after(hand, lambda bgr, window: Bodies.none(), config) == 2
+    far = upright_hand((400, 400))
+    assert raised_after(far, lambda bgr, window: body(**UP), config) == 2
+
+
+def test_a_small_hand_without_an_owner_waits_longer(upright_hand):
+    config = Config(unowned_patience_s=1.0)
+    hands = upright_hand((148, 70)), upright_hand((148, 170), palm_px=40.0)
+    after = [raised_after(hand, lambda bgr, window: Bodies.none(), config) for hand in hands]
+    assert after == [10, 2]
+
+
+def test_bodies_are_looked_for_in_the_picture_that_the_hands_models_saw(upright_hand):
+    hands, looked = Told(upright_hand((148, 70))), []
+
+    def look(bgr, window):
+        looked.append(bgr)
+        return Bodies.none()
+
+    opinion = SecondOpinion(hands, OwnerFinder(look), Config())
+    opinion.find(CameraImage(0, "", np.zeros((480, 640, 3), np.uint8)))
+    assert looked[0] is hands.seen
+    assert opinion.seen is hands.seen
 
 
 def test_the_specifications_rule_is_not_vetoed(body, upright_hand):
@@ -117,6 +173,7 @@ class Told(Always):
     """A hand detector that can be told where to look, and how much."""
 
     work = PerceptionWork(places=2)
+    seen = np.full((480, 640, 3), 90, np.uint8)
 
     def expect(self, boxes_px):
         self.expected_px = boxes_px
