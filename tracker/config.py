@@ -255,7 +255,8 @@ class Config(BaseModel):
         unit="px", group="pose", live=True, ge=0.0, le=10000.0,
     )  # fmt: skip
     unowned_patience_s: float = _parameter(
-        2.0, "... once it has been up for so long; an owner's pose decides at once.",
+        2.0, "... once it has been up for so long with a sure score (`raised_score_min`); an "
+        "owner's pose decides at once.",
         unit="s", group="pose", live=True, ge=0.0, le=3600.0,
     )  # fmt: skip
     hand_shoulder_rise_min: float = _parameter(

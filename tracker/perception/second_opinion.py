@@ -71,9 +71,7 @@ class SecondOpinion:
             self._bodies.expect(hands)
         bodies = self._bodies.find(image)
         if isinstance(self._bodies, OwnerFinder):
-            is_small = hands.length_px < self._config.owner_hand_px
-            patience_s = np.where(is_small, self._config.unowned_patience_s, 0.0)
-            is_waiting = self._bodies.still_looking(hands, patience_s)
+            is_waiting = self._bodies.still_looking(hands, unowned_patience_s(hands, self._config))
             hands = replace(hands, raised=hands.raised & ~is_waiting)
         return weigh_opinions(hands, bodies, (image.width, image.height), self._config)
 
@@ -91,6 +89,12 @@ class SecondOpinion:
         self._hands.configure(config)
         self._bodies.configure(config)
         self._config = config
+
+
+def unowned_patience_s(hands: Hands, config: Config) -> FloatArray:
+    """For how long each hand waits for an owner, shape (H,): a small unsure one for ever."""
+    patience_s = np.where(hands.score < config.raised_score_min, np.inf, config.unowned_patience_s)
+    return np.where(hands.length_px < config.owner_hand_px, patience_s, 0.0)
 
 
 def weigh_opinions(

@@ -81,6 +81,11 @@ def test_a_small_hand_without_an_owner_waits_longer(upright_hand):
     assert after == [10, 2]
 
 
+def test_a_small_unsure_hand_without_an_owner_never_counts(upright_hand):
+    hand = replace(upright_hand((148, 70)), score=[0.7])
+    assert raised_after(hand, lambda bgr, window: Bodies.none(), Config()) is None
+
+
 def test_bodies_are_looked_for_in_the_picture_that_the_hands_models_saw(upright_hand):
     hands, looked = Told(upright_hand((148, 70))), []
 
