@@ -23,8 +23,8 @@ NEW_SHARE = 0.25
 _SHRINK, _LEFT = 4, 0.25 * float(np.linalg.norm((0.114, 0.587, 0.299)))
 #: What differs by so many standard deviations of noise has moved.
 _MOVED_STD = 5.0
-#: Every so many rows and columns are measured.
-_STEP = 8
+#: Brightness and noise are measured at every so many rows and columns.
+_STEP, _NOISE_STEP = 8, (16, 4)
 _MEDIAN_STD = 0.6745  # median of what is normally distributed, without its sign
 
 
@@ -72,13 +72,19 @@ def measure_noise(gray: ImageArray) -> float:
     Source: Immerkaer, "Fast Noise Variance Estimation", Computer Vision and Image Understanding
         64(2), 1996; with the median for the mean, which edges would pull up.
     """
-    height = len(gray)
-    above, here, below = (
-        gray[row : max(height - 2 + row, 0) : _STEP].astype(np.float32) for row in range(3)
-    )
-    bent = above - 2.0 * here + below
+    height, width = gray.shape
+    rows, columns = _NOISE_STEP
+
+    def beside(down: int, right: int) -> np.ndarray:
+        last = max(height - 2 + down, 0), max(width - 2 + right, 0)
+        return gray[down : last[0] : rows, right : last[1] : columns].astype(np.float32)
+
     # Slopes and curves of the picture cancel out; of noise, 6 standard deviations are left.
-    bent = (bent[:, :-2] - 2.0 * bent[:, 1:-1] + bent[:, 2:])[:, ::2]
+    bent = 4.0 * beside(1, 1)
+    for down, right in ((0, 1), (1, 0), (1, 2), (2, 1)):
+        bent -= 2.0 * beside(down, right)
+    for down, right in ((0, 0), (0, 2), (2, 0), (2, 2)):
+        bent += beside(down, right)
     return float(np.median(np.abs(bent))) / (6.0 * _MEDIAN_STD) if bent.size else 0.0
 
 

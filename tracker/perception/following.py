@@ -199,6 +199,8 @@ class HandFollower:
 
 def drop_known(found: Regions, known: Regions) -> Regions:
     """The found regions that hold neither a known hand, or a part of one, nor an earlier one."""
+    if len(found) == 0:
+        return found
     apart_px = np.linalg.norm(found.center_px[:, None] - known.center_px[None], axis=-1)
     is_part = SMALLER_HAND * found.side_px[:, None] < known.side_px
     is_part &= apart_px < known.side_px / 4
@@ -209,6 +211,8 @@ def drop_known(found: Regions, known: Regions) -> Regions:
 
 def first_of_each_hand(hands: Landmarks) -> BoolArray:
     """Mask of one row per hand where several regions led to the same one; the surest stays."""
+    if len(hands) < 2:
+        return np.ones(len(hands), dtype=bool)
     side = regions_from_landmarks(hands.points_px).side_px
     apart = hands.points_px[:, None] - hands.points_px[None]
     distance = np.linalg.norm(apart, axis=-1).mean(axis=-1)
@@ -234,6 +238,8 @@ def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:
 def regions_of(found: Sequence[Palms], config: Config) -> Regions:
     """The regions of palms from several searches, the surest first."""
     palms = Palms.concatenate(Palms.none(), *found)
+    if len(palms) == 0:
+        return Regions.none()
     palms = palms[np.argsort(-palms.score, kind="stable")]
     regions = regions_from_palms(palms.boxes_px, palms.keypoints_px)
     is_small = regions.side_px < SIDE_HANDS * config.small_hand_px
