@@ -23,8 +23,8 @@ NEW_SHARE = 0.25
 _SHRINK, _LEFT = 4, 0.25 * float(np.linalg.norm((0.114, 0.587, 0.299)))
 #: What differs by so many standard deviations of noise has moved.
 _MOVED_STD = 5.0
-#: Brightness and noise are measured at every so many rows and columns.
-_STEP, _NOISE_STEP = 8, (16, 4)
+#: Measured at every so many rows and columns: reading few rows is what keeps it cheap.
+_STEP = (16, 4)
 _MEDIAN_STD = 0.6745  # median of what is normally distributed, without its sign
 
 
@@ -45,7 +45,7 @@ class PictureClearer:
         """
         green = bgr[:, :, 1]
         noise_std = measure_noise(green)
-        bright = float(np.percentile(green[::_STEP, ::_STEP], 98.0))
+        bright = _quantile(green[:: _STEP[0], :: _STEP[1]], 0.98)
         gain = min(LIGHT / max(bright, 1.0), GAIN_MAX) if bright < DARK else 1.0
         if noise_std < NOISE_MIN:
             self._mean = None
@@ -73,7 +73,7 @@ def measure_noise(gray: ImageArray) -> float:
         64(2), 1996; with the median for the mean, which edges would pull up.
     """
     height, width = gray.shape
-    rows, columns = _NOISE_STEP
+    rows, columns = _STEP
 
     def beside(down: int, right: int) -> np.ndarray:
         last = max(height - 2 + down, 0), max(width - 2 + right, 0)
@@ -85,7 +85,13 @@ def measure_noise(gray: ImageArray) -> float:
         bent -= 2.0 * beside(down, right)
     for down, right in ((0, 0), (0, 2), (2, 0), (2, 2)):
         bent += beside(down, right)
-    return float(np.median(np.abs(bent))) / (6.0 * _MEDIAN_STD) if bent.size else 0.0
+    return _quantile(np.abs(bent), 0.5) / (6.0 * _MEDIAN_STD) if bent.size else 0.0
+
+
+def _quantile(values: np.ndarray, share: float) -> float:
+    """The nearest of many values; NumPy's own interpolates, at four times the cost."""
+    row = round(share * (values.size - 1))
+    return float(np.partition(values, row, axis=None)[row])
 
 
 def _brighten(bgr: np.ndarray, gain: float) -> ImageArray:

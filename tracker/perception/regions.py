@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -42,12 +42,7 @@ class Regions:
         return len(self.side_px)
 
     def __getitem__(self, rows: Any) -> Regions:
-        return replace(
-            self,
-            center_px=self.center_px[rows],
-            side_px=self.side_px[rows],
-            rotation_rad=self.rotation_rad[rows],
-        )
+        return Regions(self.center_px[rows], self.side_px[rows], self.rotation_rad[rows])
 
     @staticmethod
     def none() -> Regions:
