@@ -43,12 +43,10 @@ def admit(
     """
     count = len(values)
     raised, others = np.empty(count, np.int64), np.empty(count, np.int64)
-    xy = np.empty((count, 2))
+    x_m, y_m = np.empty(count), np.empty(count)
     hands = rest = 0
     for row in range(count):
-        if not (
-            may_enter[row] and _is_usable(values[row], covariance[row], model[row], pose[row])
-        ):
+        if not (may_enter[row] and _is_usable(values, covariance, model, pose, row)):
             continue
         if not is_raised[row]:
             others[rest] = row
@@ -70,33 +68,36 @@ def admit(
             range_m = unknown_range_m if np.isnan(y) else y
             angle = x + pose[row, 2]
             x, y = pose[row, 0] + range_m * np.cos(angle), pose[row, 1] + range_m * np.sin(angle)
-        is_new = True
+        near = 0
         for earlier in range(kept):
-            across, along = x - xy[earlier, 0], y - xy[earlier, 1]
-            is_new &= not across * across + along * along < same_person_distance_m**2
-        if is_new:
-            raised[kept], xy[kept, 0], xy[kept, 1] = row, x, y
+            across, along = x - x_m[earlier], y - y_m[earlier]
+            near += across * across + along * along < same_person_distance_m**2
+        if near == 0:
+            raised[kept], x_m[kept], y_m[kept] = row, x, y
             kept += 1
     return raised[:kept], others[:rest]
 
 
 @loop
-def _is_usable(values: FloatArray, covariance: FloatArray, model: int, pose: FloatArray) -> bool:
-    first, second = covariance[0, 0], covariance[1, 1]
-    is_polar = model == _POLAR
+def _is_usable(
+    values: FloatArray, covariance: FloatArray, model: IntArray, pose: FloatArray, row: int
+) -> bool:
+    first, second = covariance[row, 0, 0], covariance[row, 1, 1]
+    is_polar = model[row] == _POLAR
     # NaN compares as false, which is what is meant throughout.
-    if not abs(values[0]) < ABSURD_M:
+    if not abs(values[row, 0]) < ABSURD_M:
         return False
-    if not (abs(values[1]) < ABSURD_M or (is_polar and np.isnan(values[1]))):
+    if not (abs(values[row, 1]) < ABSURD_M or (is_polar and np.isnan(values[row, 1]))):
         return False
-    for number in pose:
-        if not abs(number) < ABSURD_M:
+    for number in range(3):
+        if not abs(pose[row, number]) < ABSURD_M:
             return False
-    if is_polar and values[1] < 0.0:
+    if is_polar and values[row, 1] < 0.0:
         return False
     if not (first > VARIANCE_MIN and second > VARIANCE_MIN and second < VARIANCE_MAX):
         return False
     if not first < (BEARING_VARIANCE_MAX if is_polar else VARIANCE_MAX):
         return False
-    mixed, mirrored, spread = covariance[0, 1], covariance[1, 0], np.sqrt(first) * np.sqrt(second)
+    mixed, mirrored = covariance[row, 0, 1], covariance[row, 1, 0]
+    spread = np.sqrt(first) * np.sqrt(second)
     return abs(mixed) < (1.0 - 1e-9) * spread and abs(mixed - mirrored) <= 1e-9 * spread

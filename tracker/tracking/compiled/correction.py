@@ -39,10 +39,9 @@ def update_assigned(
         if pair < 0:
             continue
         for mode in range(modes):
-            own_mean, own = mean[mode, person], covariance[mode, person]
             likelihood[mode] = numbers[pair, mode, LOG_LIKELIHOOD]
-            _correct(own_mean, own, numbers[pair, mode], own_mean, own, root)
-        _weigh(weight[:, person], likelihood)
+            _correct(mean, covariance, mode, person, numbers, pair, mean, covariance, person, root)
+        _weigh(weight, person, likelihood)
 
 
 @loop
@@ -57,7 +56,7 @@ def update_jointly(
     """Correct each track with all its pairs, in place: `posterior.update_jointly`."""
     pairs, modes = len(track), len(weight)
     share, total = np.empty((modes, pairs)), np.empty(modes)
-    moved, spread = np.empty((pairs, 4)), np.empty((pairs, 4, 4))
+    moved, spread = np.empty((modes, pairs, 4)), np.empty((modes, pairs, 4, 4))
     shift, root = np.empty(4), np.empty((4, 2))
     begin = 0
     while begin < pairs:
@@ -80,73 +79,89 @@ def update_jointly(
             for pair in range(begin, end):
                 total[mode] += share[mode, pair]
             total[mode] = max(total[mode], 1e-300)
-            own_mean, own = mean[mode, person], covariance[mode, person]
             shift[:] = 0.0
             for pair in range(begin, end):
                 share[mode, pair] /= total[mode]
-                _correct(own_mean, own, numbers[pair, mode], moved[pair], spread[pair], root)
+                _correct(mean, covariance, mode, person, numbers, pair, moved, spread, pair, root)
                 for row in range(4):
-                    moved[pair, row] -= own_mean[row]
-                    shift[row] += share[mode, pair] * moved[pair, row]
+                    moved[mode, pair, row] -= mean[mode, person, row]
+                    shift[row] += share[mode, pair] * moved[mode, pair, row]
             stay = missed / total[mode]
             for row in range(4):
                 for column in range(4):
-                    merged = stay * (own[row, column] + shift[row] * shift[column])
+                    own = covariance[mode, person, row, column]
+                    merged = stay * (own + shift[row] * shift[column])
                     for pair in range(begin, end):
-                        apart = moved[pair, row] - shift[row]
-                        outer = apart * (moved[pair, column] - shift[column])
-                        merged += share[mode, pair] * (spread[pair, row, column] + outer)
-                    own[row, column] = merged
-                own_mean[row] += shift[row]
+                        apart = moved[mode, pair, row] - shift[row]
+                        outer = apart * (moved[mode, pair, column] - shift[column])
+                        merged += share[mode, pair] * (spread[mode, pair, row, column] + outer)
+                    covariance[mode, person, row, column] = merged
+                mean[mode, person, row] += shift[row]
             total[mode] = np.log(total[mode])
-        _weigh(weight[:, person], total)
+        _weigh(weight, person, total)
         begin = end
 
 
 @loop
-def _weigh(weight: FloatArray, log_likelihood: FloatArray) -> None:
+def _weigh(weight: FloatArray, person: int, log_likelihood: FloatArray) -> None:
     """Bayes' rule on the modes of one track, in place: `modes.weigh_modes`."""
-    if len(weight) == 1:
+    modes = len(weight)
+    if modes == 1:
         return
-    most = log_likelihood.max()
-    for mode in range(len(weight)):
-        weight[mode] *= np.exp(log_likelihood[mode] - most)
-    weight /= weight.sum()
-    for mode in range(len(weight)):
-        weight[mode] = max(weight[mode], 1e-12)
-    weight /= weight.sum()
+    most, total = log_likelihood.max(), 0.0
+    for mode in range(modes):
+        weight[mode, person] *= np.exp(log_likelihood[mode] - most)
+        total += weight[mode, person]
+    floored = 0.0
+    for mode in range(modes):
+        weight[mode, person] = max(weight[mode, person] / total, 1e-12)
+        floored += weight[mode, person]
+    for mode in range(modes):
+        weight[mode, person] /= floored
 
 
 @loop
 def _correct(
     mean: FloatArray,
     covariance: FloatArray,
+    mode: int,
+    person: int,
     numbers: FloatArray,
+    pair: int,
     new_mean: FloatArray,
     new: FloatArray,
+    to: int,
     root: FloatArray,
 ) -> None:
-    """Mean x + K y and P - K S K' of one track: `filter.correct`.
+    """Mean x + K y and P - K S K' of one track in one mode: `filter.correct`.
 
-    What is new may take the place of what was; `root`, shape (4, 2), is room to work in.
+    What is new goes to a row of the arrays named so, and may take the place of what was; `root`,
+    shape (4, 2), is room to work in.
     """
-    h00, h01, h10, h11 = numbers[H00], numbers[H01], numbers[H10], numbers[H11]
-    p00, p01, p11 = covariance[0, 0], covariance[0, 1], covariance[1, 1]
+    h00, h01 = numbers[pair, mode, H00], numbers[pair, mode, H01]
+    h10, h11 = numbers[pair, mode, H10], numbers[pair, mode, H11]
+    r00, r01, r11 = numbers[pair, mode, R00], numbers[pair, mode, R01], numbers[pair, mode, R11]
+    p00, p01 = covariance[mode, person, 0, 0], covariance[mode, person, 0, 1]
+    p11 = covariance[mode, person, 1, 1]
     x0, y0 = p00 * h00 + p01 * h01, p01 * h00 + p11 * h01
     x1, y1 = p00 * h10 + p01 * h11, p01 * h10 + p11 * h11
     own00, own01, own11 = h00 * x0 + h01 * y0, h00 * x1 + h01 * y1, h10 * x1 + h11 * y1
-    l00 = np.sqrt(own00 + max(numbers[R00], NOISE_SHARE_MIN * own00))
-    l10 = (own01 + numbers[R01]) / l00
-    l11 = np.sqrt(own11 + max(numbers[R11], NOISE_SHARE_MIN * own11) - l10 * l10)
-    first = numbers[Y0] / l00
-    second = (numbers[Y1] - l10 * first) / l11
+    l00 = np.sqrt(own00 + max(r00, NOISE_SHARE_MIN * own00))
+    l10 = (own01 + r01) / l00
+    l11 = np.sqrt(own11 + max(r11, NOISE_SHARE_MIN * own11) - l10 * l10)
+    first = numbers[pair, mode, Y0] / l00
+    second = (numbers[pair, mode, Y1] - l10 * first) / l11
     for row in range(4):
-        to_x, to_y = covariance[row, 0], covariance[row, 1]
+        to_x, to_y = covariance[mode, person, row, 0], covariance[mode, person, row, 1]
         root[row, 0] = (to_x * h00 + to_y * h01) / l00
         root[row, 1] = (to_x * h10 + to_y * h11 - l10 * root[row, 0]) / l11
     for row in range(4):
-        new_mean[row] = mean[row] + root[row, 0] * first + root[row, 1] * second
+        new_mean[mode, to, row] = (
+            mean[mode, person, row] + root[row, 0] * first + root[row, 1] * second
+        )
         for column in range(row + 1):
-            mean_of_both = (covariance[row, column] + covariance[column, row]) * 0.5
+            here = covariance[mode, person, row, column]
+            mirrored = covariance[mode, person, column, row]
             taken = root[row, 0] * root[column, 0] + root[row, 1] * root[column, 1]
-            new[row, column] = new[column, row] = mean_of_both - taken
+            rest = (here + mirrored) * 0.5 - taken
+            new[mode, to, row, column] = new[mode, to, column, row] = rest

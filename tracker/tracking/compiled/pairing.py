@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.containers import FloatArray, IntArray, MeasurementModel
+from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel
 from tracker.tracking.compiled.loop import loop
 from tracker.tracking.compiled.prediction import merge_modes, wrapped
 from tracker.tracking.compiled.settings import Settings
@@ -20,6 +20,8 @@ Y0, Y1, H00, H01, H10, H11, R00, R01, R11, LOG_LIKELIHOOD = range(10)
 #: What one sensor would see of one track: bearing and range (or x and y), the derivatives, H P H',
 #: the spread of the innovation without the claim's noise, and what the pose's doubt adds to it.
 _E0, _E1, _J00, _J01, _J10, _J11, _P00, _P01, _P11, _S00, _S01, _S11, _D00, _D01, _D11 = range(15)
+#: Of each claim: its numbers, its noise, and the log-density of newcomers there.
+_Z0, _Z1, _N00, _N01, _N11, _NEWCOMER = range(6)
 
 
 @loop
@@ -55,87 +57,110 @@ def find_pairs(
     """
     modes, tracks = weight.shape
     order, bounds, kinds = _grouped(rows, values, model, pose, doubt)
+    claims = _claims(rows, order, bounds, kinds, values, noise, settings)
     one_mean, one_covariance = merge_modes(weight, mean, covariance)
     room = 2 * (tracks + len(rows))
     track, claim = np.empty(room, np.int64), np.empty(room, np.int64)
     numbers, odds = np.empty((room, modes, 10)), np.empty(room)
-    seen, near = np.empty((modes + 1, 15)), np.empty(len(rows), np.int64)
-    decisive = seen[modes] if modes == 2 else seen[0]
+    seen, is_near = np.empty((modes + 1, 15)), np.empty(len(rows), np.bool_)
+    decisive = modes if modes == 2 else 0  # row of `seen` that decides the gate
     pairs = 0
     for person in range(tracks):
         for group in range(len(kinds)):
-            kind, leader = kinds[group], rows[order[bounds[group]]]
+            kind, begin, end = kinds[group], bounds[group], bounds[group + 1]
+            leader = rows[order[begin]]
             for mode in range(modes):
                 _expect(
-                    mean[mode, person], covariance[mode, person], kind,
-                    pose[leader], doubt[leader], settings.innovation_floor_m, seen[mode],
+                    mean[mode, person, 0], mean[mode, person, 1],
+                    covariance[mode, person, 0, 0], covariance[mode, person, 0, 1],
+                    covariance[mode, person, 1, 1],
+                    kind, pose, doubt, leader, settings.innovation_floor_m, seen, mode,
                 )  # fmt: skip
             if modes == 2:
                 _expect(
-                    one_mean[person], one_covariance[person], kind,
-                    pose[leader], doubt[leader], settings.innovation_floor_m, seen[modes],
+                    one_mean[person, 0], one_mean[person, 1], one_covariance[person, 0, 0],
+                    one_covariance[person, 0, 1], one_covariance[person, 1, 1],
+                    kind, pose, doubt, leader, settings.innovation_floor_m, seen, modes,
                 )  # fmt: skip
             dof = settings.outlier_dof if kind == _POLAR else 0.0
             limit = settings.bearing_limit if kind == _BEARING else settings.ranged_limit
-            count = _inside_box(
-                decisive, kind, limit, dof, rows, order[bounds[group] : bounds[group + 1]],
-                values, noise, near,
-            )  # fmt: skip
-            for number in near[:count]:
-                row = rows[number]
-                distance, _ = _distance(decisive, values[row], noise[row], kind, dof)
+            far = limit
+            if dof > 0.0:  # ranges may be farther off, under the Student-t
+                far = max(far, dof * np.expm1(limit / (dof + 1.0)))
+            _mark_near(seen, decisive, kind, far, claims, begin, end, is_near)
+            for place in range(begin, end):
+                if not is_near[place]:
+                    continue
+                first, second = _innovation(seen, decisive, claims, place, kind)
+                if first * first > limit * (seen[decisive, _S00] + claims[_N00, place]):
+                    continue
+                distance, _ = _distance(seen, decisive, claims, place, first, second, dof)
                 if not distance <= limit:
                     continue
                 if pairs == len(track):
                     track, claim = _twice(track), _twice(claim)
                     numbers, odds = _twice(numbers), _twice(odds)
-                track[pairs], claim[pairs] = person, number
-                likelihood = -np.inf
+                track[pairs], claim[pairs] = person, order[place]
+                likelihood = 0.0
                 for mode in range(modes):
-                    _compare(seen[mode], values[row], noise[row], kind, dof, numbers[pairs, mode])
-                    joint = numbers[pairs, mode, LOG_LIKELIHOOD]
+                    joint = _compare(seen, mode, claims, place, kind, dof, numbers, pairs)
                     if modes == 2:
                         joint += np.log(weight[mode, person])
-                    likelihood = log_of_sum(likelihood, joint)
-                odds[pairs] = likelihood - np.log(_newcomer_density(kind, values[row], settings))
+                    likelihood = joint if mode == 0 else log_of_sum(likelihood, joint)
+                odds[pairs] = likelihood - claims[_NEWCOMER, place]
                 pairs += 1
     return track[:pairs], claim[:pairs], numbers[:pairs], odds[:pairs]
 
 
 @loop
-def _inside_box(
-    seen: FloatArray,
-    kind: int,
-    limit: float,
-    dof: float,
+def _claims(
     rows: IntArray,
-    claims: IntArray,
+    order: IntArray,
+    bounds: IntArray,
+    kinds: IntArray,
     values: FloatArray,
     noise: FloatArray,
-    near: IntArray,
-) -> int:
-    """Claims inside the box around the gate's ellipse, written to `near`; says how many.
+    settings: Settings,
+) -> FloatArray:
+    """What is needed of each claim, shape (6, C), in the order of the groups."""
+    claims = np.empty((6, len(rows)))
+    for group in range(len(kinds)):
+        kind = kinds[group]
+        for place in range(bounds[group], bounds[group + 1]):
+            row = rows[order[place]]
+            claims[_Z0, place], claims[_N00, place] = values[row, 0], noise[row, 0, 0]
+            if kind == _BEARING:
+                claims[_Z1, place], claims[_N01, place], claims[_N11, place] = 0.0, 0.0, 1.0
+            else:
+                claims[_Z1, place] = values[row, 1]
+                claims[_N01, place], claims[_N11, place] = noise[row, 0, 1], noise[row, 1, 1]
+            claims[_NEWCOMER, place] = np.log(_newcomer_density(kind, values[row, 1], settings))
+    return claims
 
-    Each of the two numbers alone rules most pairs out, and the second one, which does not wrap,
-    does so at the lowest price.
+
+@loop
+def _mark_near(
+    seen: FloatArray,
+    at: int,
+    kind: int,
+    far: float,
+    claims: FloatArray,
+    begin: int,
+    end: int,
+    is_near: BoolArray,
+) -> None:
+    """Mark the claims of a group whose second number, alone, could be inside the gate.
+
+    It does not wrap and rules most pairs out, at the price of a pass over few numbers.
     """
-    first_seen, second_seen, s00, s11 = seen[_E0], seen[_E1], seen[_S00], seen[_S11]
-    tail = limit
-    if dof > 0.0:  # ranges may be farther off, under the Student-t
-        tail = max(limit, dof * np.expm1(limit / (dof + 1.0)))
-    count = 0
-    for claim in claims:
-        row = rows[claim]
-        second = values[row, 1] - second_seen
-        if kind != _BEARING and second * second > tail * (s11 + noise[row, 1, 1]):
-            continue
-        first = values[row, 0] - first_seen
-        if kind != _CARTESIAN:
-            first = wrapped(first)
-        if first * first <= limit * (s00 + noise[row, 0, 0]):
-            near[count] = claim
-            count += 1
-    return count
+    if kind == _BEARING:
+        is_near[begin:end] = True
+        return
+    expected, variance = seen[at, _E1], seen[at, _S11]
+    number, noise, marked = claims[_Z1, begin:end], claims[_N11, begin:end], is_near[begin:end]
+    for place in range(len(number)):
+        apart = number[place] - expected
+        marked[place] = apart * apart <= far * (variance + noise[place])
 
 
 @loop
@@ -196,87 +221,83 @@ def _is_same_sensor(row: int, other: int, pose: FloatArray, doubt: FloatArray) -
 
 @loop
 def _expect(
-    mean: FloatArray,
-    covariance: FloatArray,
+    x: float,
+    y: float,
+    p00: float,
+    p01: float,
+    p11: float,
     kind: int,
     pose: FloatArray,
     doubt: FloatArray,
+    row: int,
     floor_m: float,
     seen: FloatArray,
+    at: int,
 ) -> None:
-    seen[_D00] = seen[_D01] = seen[_D11] = 0.0
-    if kind == _CARTESIAN:
-        seen[_E0], seen[_E1] = mean[0], mean[1]
-        seen[_J00] = seen[_J11] = 1.0
-        seen[_J01] = seen[_J10] = 0.0
-    else:
-        dx, dy = mean[0] - pose[0], mean[1] - pose[1]
+    """What a sensor, in that row, would see of somebody; written to a row of `seen`."""
+    d00 = d01 = d11 = 0.0
+    e0, e1, h00, h01, h10, h11 = x, y, 1.0, 0.0, 0.0, 1.0
+    if kind != _CARTESIAN:
+        dx, dy = x - pose[row, 0], y - pose[row, 1]
         range_m = max(np.hypot(dx, dy), RANGE_FLOOR_M)
         cos, sin = dx / range_m, dy / range_m
-        seen[_E0], seen[_E1] = np.arctan2(dy, dx) - pose[2], range_m
-        seen[_J00], seen[_J01] = -sin / range_m, cos / range_m
-        seen[_J10], seen[_J11] = cos, sin
+        e0, e1 = np.arctan2(dy, dx) - pose[row, 2], range_m
+        h00, h01, h10, h11 = -sin / range_m, cos / range_m, cos, sin
         if kind == _BEARING:
-            seen[_E1] = seen[_J10] = seen[_J11] = 0.0
-        seen[_D00], seen[_D01], seen[_D11] = pose_doubt(
-            seen[_J00], seen[_J01], seen[_J10], seen[_J11], doubt
-        )
-    h00, h01, h10, h11 = seen[_J00], seen[_J01], seen[_J10], seen[_J11]
-    p00, p01, p11 = covariance[0, 0], covariance[0, 1], covariance[1, 1]
+            e1 = h10 = h11 = 0.0
+        d00, d01, d11 = pose_doubt(h00, h01, h10, h11, doubt, row)
     x0, y0 = h00 * p00 + h01 * p01, h00 * p01 + h01 * p11
     x1, y1 = h10 * p00 + h11 * p01, h10 * p01 + h11 * p11
-    seen[_P00], seen[_P01], seen[_P11] = (
-        x0 * h00 + y0 * h01,
-        x0 * h10 + y0 * h11,
-        x1 * h10 + y1 * h11,
-    )
+    own00, own01, own11 = x0 * h00 + y0 * h01, x0 * h10 + y0 * h11, x1 * h10 + y1 * h11
+    seen[at, _E0], seen[at, _E1] = e0, e1
+    seen[at, _J00], seen[at, _J01], seen[at, _J10], seen[at, _J11] = h00, h01, h10, h11
+    seen[at, _P00], seen[at, _P01], seen[at, _P11] = own00, own01, own11
+    seen[at, _D00], seen[at, _D01], seen[at, _D11] = d00, d01, d11
     # Only the gate and the likelihoods see the floor, the filter does not.
-    seen[_S00] = max(seen[_P00], floor_m**2 * (h00 * h00 + h01 * h01)) + seen[_D00]
-    seen[_S01] = seen[_P01] + seen[_D01]
-    seen[_S11] = max(seen[_P11], floor_m**2 * (h10 * h10 + h11 * h11)) + seen[_D11]
+    seen[at, _S00] = max(own00, floor_m**2 * (h00 * h00 + h01 * h01)) + d00
+    seen[at, _S01] = own01 + d01
+    seen[at, _S11] = max(own11, floor_m**2 * (h10 * h10 + h11 * h11)) + d11
 
 
 @loop
 def pose_doubt(
-    h00: float, h01: float, h10: float, h11: float, doubt: FloatArray
+    h00: float, h01: float, h10: float, h11: float, doubt: FloatArray, row: int
 ) -> tuple[float, float, float]:
     """What the pose's covariance adds to the noise: `sensor_model.pose_noise`.
 
     The derivatives by the sensor's x, y and yaw are (-J, (-1, 0)), all of one sign.
     """
-    xx, xy, yy, turn = doubt[0, 0], doubt[0, 1], doubt[1, 1], doubt[2, 2]
-    a0, a1 = xx * h00 + xy * h01 + doubt[0, 2], xy * h00 + yy * h01 + doubt[1, 2]
-    a2 = doubt[0, 2] * h00 + doubt[1, 2] * h01 + turn
+    xx, xy, yy = doubt[row, 0, 0], doubt[row, 0, 1], doubt[row, 1, 1]
+    x_turn, y_turn, turn = doubt[row, 0, 2], doubt[row, 1, 2], doubt[row, 2, 2]
+    a0, a1 = xx * h00 + xy * h01 + x_turn, xy * h00 + yy * h01 + y_turn
+    a2 = x_turn * h00 + y_turn * h01 + turn
     b0, b1 = xx * h10 + xy * h11, xy * h10 + yy * h11
-    b2 = doubt[0, 2] * h10 + doubt[1, 2] * h11
+    b2 = x_turn * h10 + y_turn * h11
     return h00 * a0 + h01 * a1 + a2, h00 * b0 + h01 * b1 + b2, h10 * b0 + h11 * b1
 
 
 @loop
-def _innovation(seen: FloatArray, values: FloatArray, kind: int) -> tuple[float, float]:
-    first = values[0] - seen[_E0]
-    if kind != _CARTESIAN:
-        first = wrapped(first)
-    return first, 0.0 if kind == _BEARING else values[1] - seen[_E1]
-
-
-@loop
-def _noise(noise: FloatArray, kind: int) -> tuple[float, float, float]:
-    if kind == _BEARING:
-        return noise[0, 0], 0.0, 1.0
-    return noise[0, 0], noise[0, 1], noise[1, 1]
+def _innovation(
+    seen: FloatArray, at: int, claims: FloatArray, place: int, kind: int
+) -> tuple[float, float]:
+    first, second = claims[_Z0, place] - seen[at, _E0], claims[_Z1, place] - seen[at, _E1]
+    return first if kind == _CARTESIAN else wrapped(first), second
 
 
 @loop
 def _distance(
-    seen: FloatArray, values: FloatArray, noise: FloatArray, kind: int, dof: float
+    seen: FloatArray,
+    at: int,
+    claims: FloatArray,
+    place: int,
+    first: float,
+    second: float,
+    dof: float,
 ) -> tuple[float, float]:
     """Squared distance of the innovation, and the area that S spans: `gating.squared_distance`."""
-    first, second = _innovation(seen, values, kind)
-    r00, r01, r11 = _noise(noise, kind)
-    s00, s01 = seen[_S00] + r00, seen[_S01] + r01
+    s00, s01 = seen[at, _S00] + claims[_N00, place], seen[at, _S01] + claims[_N01, place]
     share = s01 / s00
-    rest, s_rest = second - share * first, seen[_S11] + r11 - share * s01
+    rest, s_rest = second - share * first, seen[at, _S11] + claims[_N11, place] - share * s01
     square = rest * rest / s_rest
     if dof > 0.0:
         square = (dof + 1.0) * np.log1p(square / dof)
@@ -286,35 +307,47 @@ def _distance(
 @loop
 def _compare(
     seen: FloatArray,
-    values: FloatArray,
-    noise: FloatArray,
+    at: int,
+    claims: FloatArray,
+    place: int,
     kind: int,
     dof: float,
     numbers: FloatArray,
-) -> None:
-    first, second = _innovation(seen, values, kind)
-    r00, r01, r11 = _noise(noise, kind)
-    distance, area = _distance(seen, values, noise, kind, dof)
+    pair: int,
+) -> float:
+    """Write the numbers of a pair in a mode of motion; gives the log-likelihood."""
+    first, second = _innovation(seen, at, claims, place, kind)
+    distance, area = _distance(seen, at, claims, place, first, second, dof)
     freedom = 1.0 if kind == _BEARING else 2.0
-    r00, r01, r11 = r00 + seen[_D00], r01 + seen[_D01], r11 + seen[_D11]
+    r00, r01 = claims[_N00, place] + seen[at, _D00], claims[_N01, place] + seen[at, _D01]
+    r11 = claims[_N11, place] + seen[at, _D11]
     if dof > 0.0:
-        r11 = _outlier_variance(seen, first, second, r00, r01, r11, dof)
-    numbers[Y0], numbers[Y1] = first, second
-    numbers[H00], numbers[H01] = seen[_J00], seen[_J01]
-    numbers[H10], numbers[H11] = seen[_J10], seen[_J11]
-    numbers[R00], numbers[R01], numbers[R11] = r00, r01, r11
-    numbers[LOG_LIKELIHOOD] = -0.5 * (distance + np.log(area) + freedom * _LOG_TURN)
+        r11 = _outlier_variance(seen, at, first, second, r00, r01, r11, dof)
+    log_likelihood = -0.5 * (distance + np.log(area) + freedom * _LOG_TURN)
+    numbers[pair, at, Y0], numbers[pair, at, Y1] = first, second
+    numbers[pair, at, H00], numbers[pair, at, H01] = seen[at, _J00], seen[at, _J01]
+    numbers[pair, at, H10], numbers[pair, at, H11] = seen[at, _J10], seen[at, _J11]
+    numbers[pair, at, R00], numbers[pair, at, R01], numbers[pair, at, R11] = r00, r01, r11
+    numbers[pair, at, LOG_LIKELIHOOD] = log_likelihood
+    return log_likelihood
 
 
 @loop
 def _outlier_variance(
-    seen: FloatArray, first: float, second: float, r00: float, r01: float, r11: float, dof: float
+    seen: FloatArray,
+    at: int,
+    first: float,
+    second: float,
+    r00: float,
+    r01: float,
+    r11: float,
+    dof: float,
 ) -> float:
     """The range's variance, raised where the range fits badly: `outliers.outlier_noise`."""
-    share = (seen[_P01] + r01) / (seen[_P00] + r00)
+    share = (seen[at, _P01] + r01) / (seen[at, _P00] + r00)
     y = second - share * first
     r = r11 - r01 * r01 / r00
-    a = max(seen[_P11] + r11 - share * (seen[_P01] + r01) - r, 0.0)
+    a = max(seen[at, _P11] + r11 - share * (seen[at, _P01] + r01) - r, 0.0)
     weight = 1.0
     for _ in range(ROUNDS):
         scaled = r / weight
@@ -325,9 +358,9 @@ def _outlier_variance(
 
 
 @loop
-def _newcomer_density(kind: int, values: FloatArray, settings: Settings) -> float:
+def _newcomer_density(kind: int, range_m: float, settings: Settings) -> float:
     if kind == _CARTESIAN:
         return settings.newcomer_density
     if kind == _BEARING:
         return settings.newcomer_density * settings.person_range_max_m**2 / 2.0
-    return settings.newcomer_density * max(values[1], 0.1)
+    return settings.newcomer_density * max(range_m, 0.1)

@@ -35,27 +35,28 @@ def predict(
     prediction is written to the last three.
     """
     modes, people = weight.shape
-    for person in range(people):
-        for to in range(modes):
-            own_mean, own = means[to, person], covariances[to, person]
+    for to in range(modes):
+        reach, rest = transition[to, 0, 2], transition[to, 2, 2]
+        for person in range(people):
             if modes == 2:
                 first = switching[0, to] * weight[0, person]
                 second = switching[1, to] * weight[1, person]
                 weights[to, person] = first + second
                 total = max(first + second, 1e-300)
                 mix(
-                    first / total,
-                    second / total,
-                    mean[:, person],
-                    covariance[:, person],
-                    own_mean,
-                    own,
-                )
+                    first / total, second / total, mean, covariance, person,
+                    means[to], covariances[to],
+                )  # fmt: skip
             else:
                 weights[to, person] = weight[to, person]
-                own_mean[:] = mean[to, person]
-                own[:] = covariance[to, person]
-            _carry(own_mean, own, transition[to], noise[to])
+                for row in range(4):
+                    means[to, person, row] = mean[to, person, row]
+                    for column in range(4):
+                        covariances[to, person, row, column] = covariance[to, person, row, column]
+            _carry(means, covariances, to, person, reach, rest)
+            for row in range(4):
+                for column in range(4):
+                    covariances[to, person, row, column] += noise[to, row, column]
 
 
 @loop
@@ -64,41 +65,51 @@ def mix(
     second: float,
     mean: FloatArray,
     covariance: FloatArray,
+    person: int,
     mixed_mean: FloatArray,
     mixed: FloatArray,
 ) -> None:
-    """Moments of a mixture of two Gaussians, (2, 4) and (2, 4, 4), written to the last two."""
+    """Moments of the mixture of somebody's two Gaussians, written to their row of the last two.
+
+    Args:
+        first: Weight of the first one.
+        second: Weight of the second one.
+        mean: Shape (2, N, 4).
+        covariance: Shape (2, N, 4, 4).
+        person: Their row.
+        mixed_mean: Shape (N, 4).
+        mixed: Shape (N, 4, 4).
+    """
     for row in range(4):
-        apart = mean[1, row] - mean[0, row]
-        mixed_mean[row] = mean[0, row] + second * apart
+        apart = mean[1, person, row] - mean[0, person, row]
+        mixed_mean[person, row] = mean[0, person, row] + second * apart
         for column in range(4):
-            outer = apart * (mean[1, column] - mean[0, column])
-            mixed[row, column] = (
-                first * covariance[0, row, column]
-                + second * covariance[1, row, column]
+            outer = apart * (mean[1, person, column] - mean[0, person, column])
+            mixed[person, row, column] = (
+                first * covariance[0, person, row, column]
+                + second * covariance[1, person, row, column]
                 + first * second * outer
             )
 
 
 @loop
 def _carry(
-    mean: FloatArray, covariance: FloatArray, transition: FloatArray, noise: FloatArray
+    mean: FloatArray, covariance: FloatArray, mode: int, person: int, reach: float, rest: float
 ) -> None:
-    reach, rest = transition[0, 2], transition[2, 2]
+    """F x and F P F' of one track, in place."""
     for axis in range(2):
-        mean[axis] += reach * mean[axis + 2]
-        mean[axis + 2] *= rest
+        mean[mode, person, axis] += reach * mean[mode, person, axis + 2]
+        mean[mode, person, axis + 2] *= rest
     for axis in range(2):
         for column in range(4):
-            covariance[axis, column] += reach * covariance[axis + 2, column]
-            covariance[axis + 2, column] *= rest
+            speed = covariance[mode, person, axis + 2, column]
+            covariance[mode, person, axis, column] += reach * speed
+            covariance[mode, person, axis + 2, column] = rest * speed
     for row in range(4):
         for axis in range(2):
-            covariance[row, axis] += reach * covariance[row, axis + 2]
-            covariance[row, axis + 2] *= rest
-    for row in range(4):
-        for column in range(4):
-            covariance[row, column] += noise[row, column]
+            speed = covariance[mode, person, row, axis + 2]
+            covariance[mode, person, row, axis] += reach * speed
+            covariance[mode, person, row, axis + 2] = rest * speed
 
 
 @loop
@@ -110,14 +121,7 @@ def merge_modes(
         return mean[0], covariance[0]
     means, covariances = np.empty_like(mean[0]), np.empty_like(covariance[0])
     for person in range(weight.shape[1]):
-        mix(
-            weight[0, person],
-            weight[1, person],
-            mean[:, person],
-            covariance[:, person],
-            means[person],
-            covariances[person],
-        )
+        mix(weight[0, person], weight[1, person], mean, covariance, person, means, covariances)
     return means, covariances
 
 

@@ -127,7 +127,7 @@ def _begin(
         x, y = pose[claim, 0] + second * cos, pose[claim, 1] + second * sin
         range_m = max(second, RANGE_FLOOR_M)
         across, along = sin * second / range_m, cos * second / range_m
-        d00, d01, d11 = pose_doubt(-across / range_m, along / range_m, along, across, doubt[claim])
+        d00, d01, d11 = pose_doubt(-across / range_m, along / range_m, along, across, doubt, claim)
         r00, r01, r11 = r00 + d00, r01 + d01, r11 + d11
         h00, h01, h10, h11 = -range_m * sin, cos, range_m * cos, sin
     a0, a1 = h00 * r00 + h01 * r01, h00 * r01 + h01 * r11
