@@ -33,6 +33,7 @@ _LAYOUT = {
     "hand": (COUNTS, ()),
     "sensor_pose_covariance": (NUMBERS, (3, 3)),
 }
+_ORIGIN = constant(0.0, (3,))
 
 
 class MeasurementModel(IntEnum):
@@ -100,7 +101,7 @@ class Measurements:
         range_m: ArrayLike,
         bearing_std_rad: ArrayLike,
         range_std_m: ArrayLike,
-        sensor_pose: ArrayLike = (0.0, 0.0, 0.0),
+        sensor_pose: ArrayLike = _ORIGIN,
         *,
         raised: ArrayLike = True,
         person: ArrayLike = -1,

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.containers.arrays import constant
 
 #: log p(distance | one person) - log p(distance | two people) = a - b * distance, by logistic
 #: regression, pairs of both kinds weighed alike: `python benchmarks/clothes.py --photos FOLDER`,
@@ -42,7 +43,7 @@ class Appearance:
     @staticmethod
     def unknown(count: int) -> Appearance:
         """Of people who were never looked at."""
-        return Appearance(np.zeros((count, 0)))
+        return Appearance(constant(0.0, (count, 0)))
 
     def append(self, other: Appearance) -> Appearance:
         """Rows of both, in order."""

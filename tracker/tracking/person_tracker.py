@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +17,9 @@ from tracker.tracking.motion import modes_of
 from tracker.tracking.people import People
 from tracker.tracking.selection import Selector
 from tracker.tracking.view import View
+
+if TYPE_CHECKING:
+    from tracker.tracking.compiled.frame import CompiledTrack
 
 
 class PersonTracker:
@@ -43,7 +47,8 @@ class PersonTracker:
         self._config = config or Config()
         self._track: Callable[..., tuple[People, int]] = partial(track, watch=watch)
         if compiled and watch is None:
-            self._track = _compiled_track() or track
+            compiled_track = _compiled_track()
+            self._track = compiled_track() if compiled_track is not None else track
         self._next_id = 1
         self._stamp_ns: int | None = None
         self._people = self._nobody()
@@ -135,11 +140,11 @@ class PersonTracker:
 
 
 @cache
-def _compiled_track() -> Callable[..., tuple[People, int]] | None:
+def _compiled_track() -> type[CompiledTrack] | None:
     try:
-        from tracker.tracking.compiled.frame import track
+        from tracker.tracking.compiled.frame import CompiledTrack
     except ModuleNotFoundError as error:
         if error.name != "numba":
             raise
         return None
-    return track
+    return CompiledTrack

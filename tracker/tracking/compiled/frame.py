@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from tracker.config import Config
@@ -11,33 +13,68 @@ from tracker.tracking import frame
 from tracker.tracking.admission import hand_bias, is_semidefinite
 from tracker.tracking.compiled.kernel import track_frame
 from tracker.tracking.compiled.settings import settings_of
-from tracker.tracking.compiled.state import people_of, state_of
+from tracker.tracking.compiled.state import State, people_of, state_of
 from tracker.tracking.motion import motion_over
 from tracker.tracking.people import People
 from tracker.tracking.view import View
 
-_EVERYWHERE = np.zeros(0)
+_NOTHING = np.zeros(0)
 
 
-def track(
-    people: People,
-    measurements: Measurements,
-    next_id: int,
-    dt_s: float,
-    stamp_ns: int,
-    config: Config,
-    view: View | None,
-    scan_view: View | None,
-) -> tuple[People, int]:
-    """As `tracker.tracking.frame.track`."""
-    is_dressed = measurements.appearance is not None or people.appearance.histogram.size > 0
-    if is_dressed or config.measurement_model == "converted":
-        return frame.track(people, measurements, next_id, dt_s, stamp_ns, config, view, scan_view)
-    motion, doubt = motion_over(dt_s, config), measurements.sensor_pose_covariance
+class CompiledTrack:
+    """`tracker.tracking.frame.track` for the frames of one tracker, one after the other.
+
+    What it gave last is remembered as its loops want it, which spares laying the same people out
+    again; anybody else's are.
+    """
+
+    def __init__(self) -> None:
+        self._people: People | None = None
+        self._state: State | None = None
+        self._config: Config | None = None
+        self._settings = _NOTHING
+
+    def __call__(
+        self,
+        people: People,
+        measurements: Measurements,
+        next_id: int,
+        dt_s: float,
+        stamp_ns: int,
+        config: Config,
+        view: View | None,
+        scan_view: View | None,
+    ) -> tuple[People, int]:
+        """Everybody after one instant, and the identity of the next customer."""
+        is_dressed = measurements.appearance is not None or people.appearance.histogram.size > 0
+        if is_dressed or config.measurement_model == "converted":
+            return frame.track(
+                people, measurements, next_id, dt_s, stamp_ns, config, view, scan_view
+            )
+        if config is not self._config:
+            self._config, self._settings = config, settings_of(config)
+        state = self._state
+        if state is None or people is not self._people:
+            state = state_of(people)
+        motion = motion_over(dt_s, config)
+        state, mean, covariance, next_id = track_frame(
+            *state,
+            *_claims(measurements),
+            *(motion.transition, motion.noise, motion.switching),
+            *(_numbers(view), _numbers(scan_view), scan_view is not None),
+            *(next_id, dt_s, stamp_ns, hand_bias(dt_s, config), self._settings),
+        )
+        people = people_of(state, mean, covariance)
+        self._people, self._state = people, state
+        return people, next_id
+
+
+def _claims(measurements: Measurements) -> Iterator[np.ndarray]:
+    doubt = measurements.sensor_pose_covariance
     may_enter = constant(True, doubt.shape[:1], FLAGS)
     if np.count_nonzero(doubt):
         may_enter = is_semidefinite(doubt)
-    claims = map(
+    return map(
         np.ascontiguousarray,
         (
             *(measurements.values, measurements.covariance, measurements.model),
@@ -45,19 +82,11 @@ def track(
             *(measurements.hand, doubt, may_enter),
         ),
     )
-    state, mean, covariance, next_id = track_frame(
-        *state_of(people),
-        *claims,
-        *(motion.transition, motion.noise, motion.switching),
-        *(_numbers(view), _numbers(scan_view), scan_view is not None),
-        *(next_id, dt_s, stamp_ns, hand_bias(dt_s, config), settings_of(config)),
-    )
-    return people_of(state, mean, covariance), next_id
 
 
 def _numbers(view: View | None) -> FloatArray:
     if view is None:
-        return _EVERYWHERE
+        return _NOTHING
     numbers = np.empty(5)
     numbers[:3], numbers[3], numbers[4] = (
         view.sensor_pose, view.horizontal_fov_rad, view.range_max_m

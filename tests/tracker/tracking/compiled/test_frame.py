@@ -72,13 +72,33 @@ def test_a_room_full_of_people_is_tracked_to_the_same_numbers(config, seed):
     for stamp_ns, claims, robot_xy_m, views in room(seed):
         mine = loops.step(stamp_ns, claims, robot_xy_m, **views)
         theirs = arrays.step(stamp_ns, claims, robot_xy_m, **views)
-        for name in ("id", "confirmed", "raised", "raised_since_ns", "hand"):
-            np.testing.assert_array_equal(getattr(mine, name), getattr(theirs, name), name)
-        for name in ("mean", "covariance", "existence", "age_s", "unseen_s"):
-            one, other = getattr(mine, name), getattr(theirs, name)
-            np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9, err_msg=name)
-        assert mine.selected_id == theirs.selected_id
+        assert_same(mine, theirs)
         np.testing.assert_allclose(loops.positions_m, arrays.positions_m, atol=1e-9)
+
+
+def assert_same(mine, theirs):
+    for name in ("id", "confirmed", "raised", "raised_since_ns", "hand"):
+        np.testing.assert_array_equal(getattr(mine, name), getattr(theirs, name), name)
+    for name in ("mean", "covariance", "existence", "age_s", "unseen_s"):
+        one, other = getattr(mine, name), getattr(theirs, name)
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9, err_msg=name)
+    assert mine.selected_id == theirs.selected_id
+
+
+def test_people_changed_between_two_frames_are_those_the_next_frame_starts_from():
+    loops, arrays = PersonTracker(), PersonTracker(compiled=False)
+    changes = {
+        15: lambda tracker: setattr(tracker, "config", Config(motion="cv", confirm_window=9)),
+        30: PersonTracker.reset,
+        40: lambda tracker: setattr(tracker, "config", Config(delete_after_s=0.5)),
+    }
+    for number, (stamp_ns, claims, robot_xy_m, views) in enumerate(room(3)):
+        for tracker in (loops, arrays):
+            changes.get(number, lambda tracker: None)(tracker)
+        assert_same(
+            loops.step(stamp_ns, claims, robot_xy_m, **views),
+            arrays.step(stamp_ns, claims, robot_xy_m, **views),
+        )
 
 
 def test_however_arrays_are_laid_out_nothing_is_compiled_again():
