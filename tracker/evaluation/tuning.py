@@ -6,7 +6,7 @@ been tried lies in Optuna's storage: several processes share it, and a later cal
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_EXCEPTION, Executor, wait
 from importlib import import_module
 from signal import SIG_IGN, SIGINT, signal
@@ -74,14 +74,13 @@ def tune(
     study = _open(objective, names, base, storage)
     done, _ = _standing(study)
     study.set_user_attr("is_stopped", False)
-    if done == 0:
-        values = {name: getattr(base, name) for name in names}
-        values = {name: value for name, value in values.items() if within_search(name, value)}
-        study.enqueue_trial(values, skip_if_exists=True)
+    first = {name: getattr(base, name) for name in names} if done == 0 else {}
+    first = {name: value for name, value in first.items() if within_search(name, value)}
     shares = [len(part) for part in np.array_split(np.arange(max(trials - done, 0)), jobs)]
+    firsts = [first, *[{}] * (len(shares) - 1)]
     work = [
-        (objective, tuple(names), base, storage, share, (seed, done, worker))
-        for worker, share in enumerate(shares)
+        (objective, tuple(names), base, storage, share, (seed, done, worker), given)
+        for worker, (share, given) in enumerate(zip(shares, firsts, strict=True))
         if share
     ]
     if executor is None:
@@ -138,19 +137,22 @@ def _search(
     storage: str,
     trials: int,
     seeds: tuple[int, ...],
+    first: Mapping[str, Any],
     progress: Progress = lambda done, best: None,
 ) -> None:
-    """One process's share of the trials."""
+    """One process's share of the trials; what the first one of them tries may be given."""
     optuna = _optuna()
     study = _load(optuna, storage, objective)
     with catch_warnings():
         simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
-        study.sampler = optuna.samplers.TPESampler(
+        sampler = optuna.samplers.TPESampler(
             n_startup_trials=_BEGINNING,
             multivariate=True,
             constant_liar=True,
             seed=int(np.random.SeedSequence(seeds).generate_state(1)[0]),
         )
+        # Not by Optuna's queue of trials: from SQLite two processes may take the same one.
+        given = optuna.samplers.PartialFixedSampler(dict(first), sampler)
     study.pruner = optuna.pruners.MedianPruner(n_startup_trials=_BEGINNING, n_warmup_steps=1)
 
     def try_one(trial: Trial) -> float:
@@ -171,6 +173,13 @@ def _search(
         if study.user_attrs.get("is_stopped"):
             study.stop()
 
+    if first:
+        study.sampler = given
+        study.optimize(try_one, n_trials=1, callbacks=[after])
+        trials -= 1
+        if study.user_attrs.get("is_stopped"):
+            return
+    study.sampler = sampler
     study.optimize(try_one, n_trials=trials, callbacks=[after])
 
 
