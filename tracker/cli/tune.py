@@ -107,7 +107,7 @@ def tune_command(
     whole parameter file: raised-hand replay -c tuning/best.yaml, or the node's.
     """
     from tracker.evaluation.scenario import SCENARIOS, default_config
-    from tracker.evaluation.tuning import tune
+    from tracker.evaluation.tuning import check_optuna, tune
     from tracker.evaluation.tuning_objective import scenario_objective
     from tracker.evaluation.tuning_space import DEFAULT_KINDS, choose_parameters
     from tracker.recording import Topics
@@ -117,6 +117,7 @@ def tune_command(
     if source is None:
         _list()
         return
+    check_optuna()
     is_scenario = source in SCENARIOS
     if not is_scenario and not Path(source).exists():
         raise ConfigError(

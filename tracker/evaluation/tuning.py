@@ -264,6 +264,15 @@ def _ended() -> tuple[Any, ...]:
     return states.COMPLETE, states.PRUNED
 
 
+def check_optuna() -> None:
+    """See to it, before any long work, that a search can begin.
+
+    Raises:
+        ConfigError: Optuna is not installed.
+    """
+    _optuna()
+
+
 def _optuna() -> ModuleType:
     try:
         optuna = import_module("optuna")

@@ -1,4 +1,5 @@
 import json
+import sys
 
 import pytest
 
@@ -59,3 +60,12 @@ def test_what_it_cannot_do_is_one_line_and_status_2(run, words, named):
     assert status == 2
     assert len(lines) == 1
     assert named in lines[0]
+
+
+def test_without_optuna_it_says_so_before_anything_begins(run, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "optuna", None)
+    status, _, error = run("tune", "people", *QUICK)
+    assert status == 2
+    assert "raised-hand-tracker[tune]" in error
+    assert "Trying" not in error
+    assert not (tmp_path / "tuning").exists()
