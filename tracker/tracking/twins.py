@@ -10,15 +10,19 @@ from tracker.tracking.people import People
 
 #: A track that has been silent for so long, beside a customer who is seen, is that customer.
 SILENT_S = 0.5
+#: Tracks that were followed side by side for longer are two people (guess); somebody who sets off
+#: is taken for two for a moment.
+TOGETHER_S = 0.5
 
 
 def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
     """Join each silent customer with the seen track closer than `same_person_distance_m`, if any.
 
-    The older identity goes on, with what the seen track knows of place, hand and time. A bystander
-    who was there while the customer was still seen is somebody else; one who has appeared since is
-    the customer, who set off faster than expected. People whose clothes rather speak for two are
-    no twins.
+    Whoever has appeared since the customer was last seen, or shortly before, is the customer, who
+    set off faster than expected: the older identity goes on, with what the seen track knows of
+    place, hand and time. Whoever was followed beside the customer before is somebody else. A
+    bystander is left alone then; a customer stays who they are, and the silent track, which has
+    strayed there, ends. People whose clothes rather speak for two are no twins.
 
     Args:
         people: Everybody.
@@ -32,14 +36,17 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
     mean, _ = people.belief.merged()
     apart = mean[silent, None, :2] - mean[seen, :2]
     distance = np.hypot(apart[..., 0], apart[..., 1])
-    is_other = np.where(
-        people.is_customer[seen],
-        people.missing_s[silent, None] <= SILENT_S,
-        people.born_ns[seen] <= people.seen_ns[silent, None],
+    is_other = (people.seen_ns[silent, None] - people.born_ns[seen]) / 1e9 > TOGETHER_S
+    is_older = ~people.is_customer[seen] | (people.id[silent, None] < people.id[seen])
+    goes_on = is_older & ~is_other
+    is_apart = np.where(
+        people.is_customer[seen], people.missing_s[silent, None] <= SILENT_S, is_other
     )
-    distance[is_other] = np.inf
+    distance[is_apart] = np.inf
     nearest = distance.argmin(axis=1)
-    close = distance[np.arange(len(silent)), nearest] < config.same_person_distance_m
+    rows = np.arange(len(silent))
+    close = distance[rows, nearest] < config.same_person_distance_m
+    goes_on = goes_on[rows, nearest]
     clothes = people.appearance
     if config.appearance_weight and close.any():
         close &= clothes.log_ratio(clothes.histogram, silent, seen[nearest]) >= 0.0
@@ -47,9 +54,9 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
         return people
     keep = np.ones(len(people), dtype=bool)
     heir = np.arange(len(people))  # whose place and hand each track has from now on
-    for mute, heard in zip(silent[close], seen[nearest[close]], strict=True):
-        older = not people.is_customer[heard] or people.id[mute] < people.id[heard]
-        if older and keep[heard]:
+    pairs = zip(silent[close], seen[nearest[close]], goes_on[close], strict=True)
+    for mute, heard, is_alive in pairs:
+        if is_alive and keep[heard]:
             heir[mute] = heard
             keep[heard] = False
         else:

@@ -28,7 +28,7 @@ from tracker.tracking.compiled.state import (
 )
 from tracker.tracking.life_cycle import BIRTH_EXISTENCE
 from tracker.tracking.sensor_model import RANGE_FLOOR_M
-from tracker.tracking.twins import SILENT_S
+from tracker.tracking.twins import SILENT_S, TOGETHER_S
 
 _CARTESIAN = int(MeasurementModel.CARTESIAN)
 
@@ -187,22 +187,24 @@ def _merge_twins(
     for mute in range(known):
         if is_seen[mute] or counts[ID, mute] == 0:
             continue
-        nearest, least = -1, settings.same_person_distance_m
+        nearest, least, goes_on = -1, settings.same_person_distance_m, False
         for heard in range(len(is_seen)):
             if not is_seen[heard]:
                 continue
-            if counts[ID, heard] > 0:
-                is_other = room.spans[MISSING_S, mute] <= SILENT_S
-            else:
-                is_other = counts[BORN_NS, heard] <= counts[SEEN_NS, mute]
+            is_customer = counts[ID, heard] > 0
+            together_s = (counts[SEEN_NS, mute] - counts[BORN_NS, heard]) / 1e9
+            is_apart = is_other = together_s > TOGETHER_S
+            if is_customer:
+                is_apart = room.spans[MISSING_S, mute] <= SILENT_S
             at = place[heard] if heard < known else room.mean[0, heard]
             apart_m = np.hypot(place[mute, 0] - at[0], place[mute, 1] - at[1])
-            if not is_other and apart_m < least:
+            if not is_apart and apart_m < least:
                 nearest, least = heard, apart_m
+                is_older = not is_customer or counts[ID, mute] < counts[ID, heard]
+                goes_on = is_older and not is_other
         if nearest < 0:
             continue
-        is_older = counts[ID, nearest] == 0 or counts[ID, mute] < counts[ID, nearest]
-        if is_older and keep[nearest]:
+        if goes_on and keep[nearest]:
             keep[nearest] = False
             _inherit(room, mute, nearest)
         else:
