@@ -18,7 +18,7 @@ class Raises:
         delays_s: From the hand being up to its report, of those reported.
         again: Reported episodes of people who had been reported before.
         same: Of these, those first reported under the identity the person had last.
-        wrong: Of these, those first reported under another identity that had stood for somebody.
+        wrong: Of these, those first reported under an identity that stood for somebody else last.
     """
 
     hands: int
@@ -44,7 +44,8 @@ def count_raises(report: EpisodeReport) -> Raises:
             first = row.identities[0]
             again += 1
             same += first == identity_of[row.person]
-            wrong += first != identity_of[row.person] and first in owner_of
+            is_theirs = owner_of.get(first, row.person) == row.person
+            wrong += first != identity_of[row.person] and not is_theirs
         for identity in row.identities:
             identity_of[row.person] = identity
             owner_of[identity] = row.person

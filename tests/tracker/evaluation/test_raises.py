@@ -27,6 +27,11 @@ def test_a_neighbor_s_identity_is_wrong_and_a_new_one_is_not():
     assert (raises.again, raises.same, raises.wrong) == (2, 0, 1)
 
 
+def test_an_older_identity_of_one_s_own_is_neither_the_same_nor_somebody_else_s():
+    raises = counted(episode(0, 1, (4, 5)), episode(0, 9, (4,)))
+    assert (raises.again, raises.same, raises.wrong) == (1, 0, 0)
+
+
 def test_missed_and_false_raises_and_delays():
     false = InventedRow(9, 0, 10**9, (0.0, 0.0), None)
     raises = counted(episode(0, 1, (4,)), episode(1, 2, ()), invented=(false,))
