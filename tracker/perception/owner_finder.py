@@ -21,7 +21,7 @@ from tracker.perception.palm_search import Window
 from tracker.perception.pictures import continues
 from tracker.perception.pose_file import PoseFile
 from tracker.perception.pose_landmarks import PoseReader
-from tracker.perception.pose_rules import find_owners
+from tracker.perception.pose_rules import VOUCHING_WRIST_SHOULDERS, find_owners
 from tracker.perception.pose_search import PoseSearch
 from tracker.perception.search_plan import clip_boxes
 
@@ -132,7 +132,10 @@ class OwnerFinder:
             return True
         looked_s = (self._last.stamp_ns - question.unowned_ns) / 1e9
         is_given_up = question.tries >= len(WINDOW_HANDS) and looked_s >= patience_s
-        return not is_given_up and bool(find_owners(hand, self._known)[0] < 0)
+        return not is_given_up and self._is_unowned(hand)
+
+    def _is_unowned(self, hand: Hands) -> bool:
+        return bool(find_owners(hand, self._known, VOUCHING_WRIST_SHOULDERS)[0] < 0)
 
     def _asked(self, hand: Hands) -> _Question | None:
         apart_px = [np.linalg.norm(hand.wrist_px[0] - item.wrist_px) for item in self._questions]
@@ -148,7 +151,7 @@ class OwnerFinder:
         seen = Bodies.concatenate(self._look(image.bgr, window), self._known)
         seen = seen[~seen.is_misread]
         self._known = seen[one_row_each(seen)]
-        is_unowned = bool(find_owners(hand, self._known)[0] < 0)
+        is_unowned = self._is_unowned(hand)
         tries += int(is_unowned)  # the window that showed the owner is tried first the next time
         unowned_ns = image.stamp_ns if last is None or not is_unowned else last.unowned_ns
         reach_px = float(hand.length_px[0])

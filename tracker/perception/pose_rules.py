@@ -12,6 +12,12 @@ from tracker.perception.raise_rules import MIDDLE_ROOT
 #: A hand belongs to the body with a wrist so close to its own, in widths of the shoulders: the
 #: pose model errs by a sixth of a hand, and the arm may have moved since (guess).
 _OWN_WRIST_SHOULDERS = 0.6
+#: A body must be so close to vouch for a hand: doubt is enough to refuse one, but not to raise it.
+#: Nine in ten drawn callers are closer to their own hand, neighbors seldom (guess).
+VOUCHING_WRIST_SHOULDERS = 0.45
+#: How long an own hand may be, in widths of the shoulders: drawn callers' measure 0.3 to 0.9, more
+#: if held to the camera, and less if closed. Neighbors much nearer or farther do not fit (guess).
+_OWN_HAND_SHOULDERS = (0.18, 1.2)
 
 
 def judge_arms(bodies: Bodies, config: Config) -> tuple[BoolArray, FloatArray]:
@@ -47,8 +53,18 @@ def head_distance_px(bodies: Bodies, points_px: FloatArray) -> FloatArray:
     return np.asarray(np.where(bodies.is_visible[:, HEAD], apart, np.inf).min(axis=1))
 
 
-def find_owners(hands: Hands, bodies: Bodies) -> IntArray:
+def find_owners(
+    hands: Hands, bodies: Bodies, reach_shoulders: float = _OWN_WRIST_SHOULDERS
+) -> IntArray:
     """Whose hand is it? The body with the nearest wrist, if that is close enough.
+
+    People who are much nearer or farther than the hand, as its size tells, do not come into
+    question.
+
+    Args:
+        hands: What the hand models found.
+        bodies: Who is there.
+        reach_shoulders: How close the wrists must be, in widths of the shoulders.
 
     Returns:
         Shape (H,): rows of `bodies`; -1 where no body fits.
@@ -56,9 +72,11 @@ def find_owners(hands: Hands, bodies: Bodies) -> IntArray:
     if len(bodies) == 0 or len(hands) == 0:
         return np.full(len(hands), -1, dtype=np.int64)
     apart = _wrists_apart_px(hands, bodies).min(axis=-1) / bodies.shoulder_px
-    apart = np.where(np.isnan(apart), np.inf, apart)
+    size = hands.length_px[:, None] / bodies.shoulder_px
+    shortest, longest = _OWN_HAND_SHOULDERS
+    apart = np.where((size > shortest) & (size < longest), apart, np.inf)
     owner = apart.argmin(axis=1)
-    return np.where(apart.min(axis=1) < _OWN_WRIST_SHOULDERS, owner, -1)
+    return np.where(apart.min(axis=1) < reach_shoulders, owner, -1)
 
 
 def arms_without_hand(hands: Hands, bodies: Bodies) -> BoolArray:
@@ -83,8 +101,9 @@ def hands_at_head(
 ) -> BoolArray:
     """Hands at their owner's head: they hold a telephone, drink, scratch.
 
-    Another one's head may well be behind a raised hand, and a wrist above the whole head is not
-    at it. The hand's own length is no yardstick: that of a closed one is guessed by the model.
+    Another one's head may well be behind a raised hand. A wrist above the eyes does not clear it:
+    so have those who scratch the crown of their head. The hand's own length is no yardstick: that
+    of a closed one is guessed by the model.
 
     Args:
         hands: What the hand models found.
@@ -99,10 +118,8 @@ def hands_at_head(
     answer = np.zeros(len(hands), dtype=bool)
     rows = np.flatnonzero(owner >= 0)
     owners = bodies[owner[rows]]
-    wrist, knuckles = hands.wrist_px[rows], hands.landmarks_px[rows, MIDDLE_ROOT]
-    top = np.where(owners.is_visible[:, HEAD], owners.points_px[:, HEAD, 1], np.inf).min(axis=1)
-    close = head_distance_px(owners, knuckles) < clearance_shoulders * owners.shoulder_px
-    answer[rows] = close & (wrist[:, 1] > top)
+    apart_px = head_distance_px(owners, hands.landmarks_px[rows, MIDDLE_ROOT])
+    answer[rows] = apart_px < clearance_shoulders * owners.shoulder_px
     return answer
 
 

@@ -14,6 +14,7 @@ from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.perception.owner_finder import OwnerFinder
 from tracker.perception.pose_hands import draw_hands
 from tracker.perception.pose_rules import (
+    VOUCHING_WRIST_SHOULDERS,
     arms_without_hand,
     find_owners,
     hands_at_head,
@@ -119,7 +120,7 @@ def weigh_opinions(
     owner = find_owners(hands, bodies)
     refused = hands_at_head(hands, bodies, owner, config.hand_head_clearance)
     refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
-    vouched = hands.pending & (owner >= 0)
+    vouched = hands.pending & (find_owners(hands, bodies, VOUCHING_WRIST_SHOULDERS) >= 0)
     hands = replace(hands, raised=(hands.raised | vouched) & ~refused)
     if config.pose_opinion != "full":
         return hands

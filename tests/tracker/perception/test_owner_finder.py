@@ -78,6 +78,11 @@ def test_an_owner_is_looked_for_until_known_or_in_every_window_and_long_enough(u
     assert looking(nobody, hand, 8, patience_s=0.6) == [True] * 6 + [False] * 2
 
 
+def test_whose_hand_is_only_near_is_not_taken_for_the_owner(upright_hand, body):
+    neighbor = Watcher(body(**UP))
+    assert looking(neighbor, upright_hand((168, 70)), 4) == [True, True, False, False]
+
+
 def test_patience_begins_when_the_owner_is_lost(upright_hand, body):
     watcher, hand = Watcher(body(**UP)), upright_hand((148, 70))
     finder, answer = OwnerFinder(watcher), []

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -79,6 +81,31 @@ def test_a_hand_far_from_all_wrists_belongs_to_nobody(body, upright_hand):
     assert len(find_owners(Hands.none(), body())) == 0
 
 
+@pytest.mark.parametrize(
+    ("length_px", "owner"), [(6.0, -1), (10.0, 0), (40.0, 0), (50.0, -1)],
+    ids=["of a person far behind", "closed", "held to the camera", "of a person far in front"],
+)  # fmt: skip
+def test_a_hand_too_small_or_large_for_a_body_belongs_to_somebody_else(
+    body, upright_hand, length_px, owner
+):
+    hand = upright_hand((150, 72), palm_px=length_px / 1.9)
+    assert find_owners(hand, body(**UP)).tolist() == [owner]
+
+
+def test_a_hand_passes_over_a_near_neighbor_to_its_owner(body, upright_hand):
+    neighbor = body(**UP)
+    owner = Bodies.seen_now(neighbor.points_px / 4.0, neighbor.visibility, neighbor.score)
+    neighbor = replace(neighbor, points_px=neighbor.points_px - (110, 50))
+    hand = upright_hand((38, 18), palm_px=3.0)  # 5.7 px, half the owner's shoulders
+    assert find_owners(hand, Bodies.concatenate(neighbor, owner)).tolist() == [1]
+
+
+def test_the_reach_is_in_widths_of_the_shoulders(body, upright_hand):
+    hand = upright_hand((168, 70))  # half a width beside the wrist
+    reaches = 0.49, 0.51
+    assert [find_owners(hand, body(**UP), reach)[0] for reach in reaches] == [-1, 0]
+
+
 def test_an_arm_has_a_hand_where_one_was_found(body, upright_hand):
     somebody = body(**UP)
     assert arms_without_hand(Hands.none(), somebody).tolist() == [[True, True]]
@@ -92,8 +119,8 @@ def test_bodies_inside_a_large_hand_have_hands(body, upright_hand):
 
 @pytest.mark.parametrize(
     ("wrist", "at_head"),
-    [((183, 75), True), ((165, 75), False), ((190, 50), False)],
-    ids=["telephone at the ear", "beside the head", "above the head"],
+    [((183, 75), True), ((165, 75), False), ((190, 42), False), ((187, 54), True)],
+    ids=["telephone at the ear", "beside the head", "above the head", "scratching the crown"],
 )
 def test_a_hand_at_its_owners_head_is_told_from_one_beside_it(body, upright_hand, wrist, at_head):
     somebody, hand = body(right_wrist=wrist), upright_hand(wrist)

@@ -50,6 +50,15 @@ def test_a_pending_hand_is_raised_where_its_owners_pose_agrees(body, upright_han
     assert weigh(hand, Bodies.none(), "veto").raised.tolist() == [False]
 
 
+def test_a_body_refuses_hands_near_its_own_but_vouches_for_its_own_alone(body, upright_hand):
+    beside = upright_hand((166, 70))  # 0.45 widths of the shoulders from the wrist
+    assert weigh(beside, body(**UP), "veto").raised.tolist() == [True]
+    assert weigh(unsure(beside), body(**UP), "veto").raised.tolist() == [False]
+    below = upright_hand((166, 115))
+    lowered = body(right_wrist=(148, 115))
+    assert weigh(below, lowered, "veto").raised.tolist() == [False]
+
+
 def test_a_pending_hand_at_its_owners_ear_is_not_raised(body, upright_hand):
     answer = weigh(unsure(upright_hand((183, 78))), body(**PHONING), "veto")
     assert answer.raised.tolist() == [False]
