@@ -97,7 +97,7 @@ def _wrists_apart_px(hands: Hands, bodies: Bodies) -> FloatArray:
 
 
 def hands_at_head(
-    hands: Hands, bodies: Bodies, owner: IntArray, clearance_shoulders: float
+    hands: Hands, bodies: Bodies, owner: IntArray, clearance_shoulders: float | FloatArray
 ) -> BoolArray:
     """Hands at their owner's head: they hold a telephone, drink, scratch.
 
@@ -110,7 +110,7 @@ def hands_at_head(
         bodies: Who is there.
         owner: Shape (H,): rows of `bodies`, or -1.
         clearance_shoulders: How far the fingers' roots must be from nose, eyes and ears, in widths
-            of the shoulders.
+            of the shoulders; one for all, or of shape (H,).
 
     Returns:
         Shape (H,).
@@ -118,8 +118,9 @@ def hands_at_head(
     answer = np.zeros(len(hands), dtype=bool)
     rows = np.flatnonzero(owner >= 0)
     owners = bodies[owner[rows]]
+    clearance = np.broadcast_to(clearance_shoulders, len(hands))[rows]
     apart_px = head_distance_px(owners, hands.landmarks_px[rows, MIDDLE_ROOT])
-    answer[rows] = apart_px < clearance_shoulders * owners.shoulder_px
+    answer[rows] = apart_px < clearance * owners.shoulder_px
     return answer
 
 

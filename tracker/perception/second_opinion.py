@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands, ImageArray, PerceptionWork
+from tracker.containers import (
+    BoolArray,
+    CameraImage,
+    FloatArray,
+    Hands,
+    ImageArray,
+    IntArray,
+    PerceptionWork,
+)
 from tracker.perception.bodies import Bodies
 from tracker.perception.body_detector import BodyDetector
 from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.head_memory import HeadMemory
 from tracker.perception.owner_finder import OwnerFinder
 from tracker.perception.pose_hands import draw_hands
 from tracker.perception.pose_rules import (
@@ -26,6 +38,8 @@ from tracker.perception.pose_rules import (
 #: (guess).
 _BODY_MAX_AGE_S = 1.0
 
+_AtHead: TypeAlias = Callable[[Hands, Bodies, IntArray, float], BoolArray]
+
 
 class SecondOpinion:
     """A hand detector whose answers are weighed against body poses.
@@ -40,6 +54,7 @@ class SecondOpinion:
         self._hands = hands
         self._bodies = bodies
         self._config = config
+        self._memory = HeadMemory()
 
     @property
     def work(self) -> PerceptionWork:
@@ -74,12 +89,15 @@ class SecondOpinion:
         if isinstance(self._bodies, OwnerFinder):
             is_waiting = self._bodies.still_looking(hands, unowned_patience_s(hands, self._config))
             hands = replace(hands, raised=hands.raised & ~is_waiting)
-        return weigh_opinions(hands, bodies, (image.width, image.height), self._config)
+        at_head = partial(self._memory.judge, image.stamp_ns)
+        size = (image.width, image.height)
+        return weigh_opinions(hands, bodies, size, self._config, at_head)
 
     def reset(self) -> None:
         """Forget earlier images."""
         self._hands.reset()
         self._bodies.reset()
+        self._memory.reset()
 
     def configure(self, config: Config) -> None:
         """Take over changed parameters, from the next image on.
@@ -99,7 +117,11 @@ def unowned_patience_s(hands: Hands, config: Config) -> FloatArray:
 
 
 def weigh_opinions(
-    hands: Hands, bodies: Bodies, image_size: tuple[int, int], config: Config
+    hands: Hands,
+    bodies: Bodies,
+    image_size: tuple[int, int],
+    config: Config,
+    at_head: _AtHead = hands_at_head,
 ) -> Hands:
     """Hands as they are after the bodies have been heard.
 
@@ -108,6 +130,7 @@ def weigh_opinions(
         bodies: Who is there, not all of them looked at just now.
         image_size: Width and height of the picture in pixels.
         config: `pose_opinion` and what it needs.
+        at_head: Says which hands are at the head; it may remember earlier images.
 
     Returns:
         The same hands, those at their owner's head or below the shoulders not raised, pending ones
@@ -118,7 +141,7 @@ def weigh_opinions(
     """
     bodies = bodies[bodies.age_s <= _BODY_MAX_AGE_S]
     owner = find_owners(hands, bodies)
-    refused = hands_at_head(hands, bodies, owner, config.hand_head_clearance)
+    refused = at_head(hands, bodies, owner, config.hand_head_clearance)
     refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
     vouched = hands.pending & (find_owners(hands, bodies, VOUCHING_WRIST_SHOULDERS) >= 0)
     hands = replace(hands, raised=(hands.raised | vouched) & ~refused)
