@@ -52,6 +52,7 @@ SHOULDERS = [Joint.LEFT_SHOULDER, Joint.RIGHT_SHOULDER]
 ELBOWS = [Joint.LEFT_ELBOW, Joint.RIGHT_ELBOW]
 WRISTS = [Joint.LEFT_WRIST, Joint.RIGHT_WRIST]
 HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
+KNEES = [Joint.LEFT_KNEE, Joint.RIGHT_KNEE]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

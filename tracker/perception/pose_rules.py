@@ -6,7 +6,7 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray
-from tracker.perception.bodies import HEAD, SHOULDERS, WRISTS, Bodies
+from tracker.perception.bodies import HEAD, HIPS, KNEES, SHOULDERS, WRISTS, Bodies
 from tracker.perception.raise_rules import MIDDLE_ROOT
 
 #: A hand belongs to the body with a wrist so close to its own, in widths of the shoulders: the
@@ -18,6 +18,8 @@ VOUCHING_WRIST_SHOULDERS = 0.45
 #: How long an own hand may be, in widths of the shoulders: drawn callers' measure 0.3 to 0.9, more
 #: if held to the camera, and less if closed. Neighbors much nearer or farther do not fit (guess).
 _OWN_HAND_SHOULDERS = (0.18, 1.2)
+#: A hand so close to a hip or a knee rests there (guess).
+_RESTING_SHOULDERS = 0.5
 
 
 def judge_arms(bodies: Bodies, config: Config) -> tuple[BoolArray, FloatArray]:
@@ -72,9 +74,7 @@ def find_owners(
     if len(bodies) == 0 or len(hands) == 0:
         return np.full(len(hands), -1, dtype=np.int64)
     apart = _wrists_apart_px(hands, bodies).min(axis=-1) / bodies.shoulder_px
-    size = hands.length_px[:, None] / bodies.shoulder_px
-    shortest, longest = _OWN_HAND_SHOULDERS
-    apart = np.where((size > shortest) & (size < longest), apart, np.inf)
+    apart = np.where(_fits(hands, bodies), apart, np.inf)
     owner = apart.argmin(axis=1)
     return np.where(apart.min(axis=1) < reach_shoulders, owner, -1)
 
@@ -94,6 +94,13 @@ def _wrists_apart_px(hands: Hands, bodies: Bodies) -> FloatArray:
     wrists = bodies.points_px[:, WRISTS]
     apart = np.linalg.norm(hands.wrist_px[:, None, None] - wrists, axis=-1)
     return np.where(bodies.is_visible[:, WRISTS], apart, np.inf)
+
+
+def _fits(hands: Hands, bodies: Bodies) -> BoolArray:
+    """Hands that are neither too small nor too large for a body, shape (H, P)."""
+    size = hands.length_px[:, None] / bodies.shoulder_px
+    shortest, longest = _OWN_HAND_SHOULDERS
+    return np.asarray((size > shortest) & (size < longest))
 
 
 def hands_at_head(
@@ -147,3 +154,27 @@ def hands_below_shoulders(
     seen = owners.is_visible[:, SHOULDERS].all(axis=1)
     answer[rows] = seen & (rise < rise_min_shoulders)
     return answer
+
+
+def hands_at_rest(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
+    """Hands of unknown owners that lie at somebody's hip or knee, and fit that body.
+
+    A hand in a lap may be misread as one that points up, so far from its true wrist that the body
+    is not known for its owner.
+
+    Args:
+        hands: What the hand models found.
+        bodies: Who is there.
+        owner: Shape (H,): rows of `bodies`, or -1.
+
+    Returns:
+        Shape (H,).
+    """
+    joints = [*HIPS, *KNEES]
+    ends = np.stack([hands.wrist_px, hands.landmarks_px[:, MIDDLE_ROOT]], axis=1)
+    apart = np.linalg.norm(ends[:, None, :, None] - bodies.points_px[:, None, joints], axis=-1)
+    apart_px = np.where(bodies.is_visible[:, joints], apart.min(axis=2), np.inf).min(
+        axis=-1, initial=np.inf
+    )
+    close = apart_px < _RESTING_SHOULDERS * bodies.shoulder_px
+    return np.asarray((owner < 0) & (close & _fits(hands, bodies)).any(axis=1))

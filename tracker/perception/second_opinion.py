@@ -30,6 +30,7 @@ from tracker.perception.pose_rules import (
     arms_without_hand,
     find_owners,
     hands_at_head,
+    hands_at_rest,
     hands_below_shoulders,
     judge_arms,
 )
@@ -133,8 +134,8 @@ def weigh_opinions(
         at_head: Says which hands are at the head; it may remember earlier images.
 
     Returns:
-        The same hands, those at their owner's head or below the shoulders not raised, pending ones
-        raised if they are the hands of somebody and neither. With
+        The same hands, those at their owner's head, below the shoulders or in a lap not raised,
+        pending ones raised if they are the hands of somebody and none of these. With
         `pose_opinion: full` they have their owners' torsos, and after them comes a schematic hand
         for each arm that is up in this very image and has none. A look at one hand alone, as with
         `veto`, may take a neighbor for its owner, and where the hand is shall not hang on that.
@@ -143,6 +144,7 @@ def weigh_opinions(
     owner = find_owners(hands, bodies)
     refused = at_head(hands, bodies, owner, config.hand_head_clearance)
     refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
+    refused |= hands_at_rest(hands, bodies, owner)
     vouched = hands.pending & (find_owners(hands, bodies, VOUCHING_WRIST_SHOULDERS) >= 0)
     hands = replace(hands, raised=(hands.raised | vouched) & ~refused)
     if config.pose_opinion != "full":

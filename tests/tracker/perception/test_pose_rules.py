@@ -10,6 +10,7 @@ from tracker.perception.pose_rules import (
     arms_without_hand,
     find_owners,
     hands_at_head,
+    hands_at_rest,
     hands_below_shoulders,
     judge_arms,
 )
@@ -158,3 +159,26 @@ def test_a_hand_whose_owners_shoulders_are_hidden_is_not_refused(body, upright_h
     hidden = body(left_shoulder=None, right_wrist=(160, 160))
     hand = upright_hand((160, 160))
     assert hands_below_shoulders(hand, hidden, np.array([0]), -0.05).tolist() == [False]
+
+
+@pytest.mark.parametrize(
+    ("wrist", "resting"), [((188, 170), True), ((190, 220), True), ((160, 130), False)],
+    ids=["at the hip", "at the knee", "beside the elbow"],
+)  # fmt: skip
+def test_a_hand_without_owner_at_a_hip_or_a_knee_rests_there(body, upright_hand, wrist, resting):
+    hand, somebody = upright_hand(wrist), body(left_wrist=None, right_wrist=None)
+    assert hands_at_rest(hand, somebody, np.array([-1])).tolist() == [resting]
+    assert hands_at_rest(hand, somebody, np.array([0])).tolist() == [False]
+
+
+def test_a_near_hand_before_the_hip_of_one_far_behind_does_not_rest_there(body, upright_hand):
+    hand = upright_hand((188, 170), palm_px=40.0)
+    assert hands_at_rest(hand, body(), np.array([-1])).tolist() == [False]
+
+
+def test_a_hip_that_is_not_seen_holds_no_hand(body, upright_hand):
+    hidden = body(right_hip=None, left_hip=None)
+    assert hands_at_rest(upright_hand((188, 160)), hidden, np.array([-1])).tolist() == [False]
+    assert hands_at_rest(upright_hand((188, 160)), Bodies.none(), np.array([-1])).tolist() == [
+        False
+    ]

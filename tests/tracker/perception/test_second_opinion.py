@@ -40,6 +40,11 @@ def test_a_hand_that_gestures_before_the_chest_is_not_raised(body, upright_hand,
     assert answer.raised.tolist() == [False]
 
 
+def test_a_hand_in_a_lap_is_not_raised_even_where_its_owner_is_not_known(body, upright_hand):
+    sitting = body(right_wrist=None, left_wrist=None)
+    assert weigh(upright_hand((188, 170)), sitting, "veto").raised.tolist() == [False]
+
+
 def unsure(hands):
     return replace(hands, raised=[False], pending=[True])
 
