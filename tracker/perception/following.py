@@ -50,6 +50,8 @@ SMALLER_HAND = 1.4
 SAME_WRIST_DISTANCE = 0.1
 #: The side of a region, in lengths of the hand.
 SIDE_HANDS = 2.0
+#: A new hand that scores too low, but from here on, is read a second time; so many in an image.
+PROMISING_SCORE, MOST_AGAIN = 0.1, 2
 _NOWHERE = np.zeros((0, 4))
 
 
@@ -101,6 +103,8 @@ class HandFollower:
         config: Config,
         expected_px: FloatArray = _NOWHERE,
         budget: int | None = None,
+        suggested: Regions | None = None,
+        spared: int = 0,
     ) -> tuple[Landmarks, IntArray]:
         """Every hand of the next image; followed ones first, in the order of the last image.
 
@@ -113,6 +117,8 @@ class HandFollower:
                 hand is likelier than elsewhere.
             budget: Model runs, of the palm search and on followed hands, that the image may take;
                 the search shrinks for it, down to one place.
+            suggested: Regions in which hands may be; each is read in place of a search.
+            spared: Places that are searched less, down to one, since other models are at work.
 
         Returns:
             The hands, and the row of each in the last image's; -1 for those newly found.
@@ -121,14 +127,18 @@ class HandFollower:
             self.reset()
         self._last = image
         regions, rows = self._regions[: config.max_hands], self._rows[: config.max_hands]
-        room = config.max_hands - len(regions)
+        guesses = self._guesses(suggested, regions, config)
+        room = config.max_hands - len(regions) - len(guesses)
         places = config.search_regions_per_frame
         if budget is not None:
-            places = max(1, min(places, budget - len(regions)))
+            places = min(places, budget - len(regions))
+        places = max(1, places - len(guesses) - spared)
         began_s = time.perf_counter()
         bgr = self.seen = self._clearer.clear(image.bgr)
         searches = self._searches(bgr, regions, expected_px, config, places if room else 0)
-        hands, palms = self._reader.read_beside(bgr, regions, searches)
+        read = Regions.concatenate(regions, guesses)
+        hands, palms = self._reader.read_beside(bgr, read, searches)
+        rows = np.concatenate([rows, np.full(len(guesses), -1)])
         searched_s = time.perf_counter()
         found = regions_of(palms, config)
         found = drop_known(found, regions)[:room]
@@ -136,12 +146,13 @@ class HandFollower:
             new_hands, _ = self._reader.read_beside(bgr, found, ())
             hands = Landmarks.concatenate(hands, new_hands)
             rows = np.concatenate([rows, np.full(len(found), -1)])
+        hands, again = self._read_again(bgr, hands, rows < 0, config)
         keep = np.flatnonzero(hands.score >= config.tracking_confidence)
         keep = keep[first_of_each_hand(hands[keep])]
         ended_s = time.perf_counter()
         self.work = PerceptionWork(
             len(searches),
-            len(regions) + len(found),
+            len(read) + len(found) + again,
             searched_s - began_s,
             ended_s - searched_s,
             ended_s - began_s,
@@ -185,6 +196,34 @@ class HandFollower:
             )
             for window in windows
         ]
+
+    def _read_again(
+        self, bgr: ImageArray, hands: Landmarks, is_new: BoolArray, config: Config
+    ) -> tuple[Landmarks, int]:
+        """New hands that are nearly believed in, read once more from where the reading puts them.
+
+        Palms of few pixels, and forearms, tell the size and turn of their hands but roughly.
+        """
+        is_open = is_new & (hands.score < config.tracking_confidence)
+        rows = np.flatnonzero(is_open & (hands.score >= PROMISING_SCORE))
+        rows = rows[np.argsort(-hands.score[rows], kind="stable")]
+        regions = regions_from_landmarks(hands.points_px[rows])
+        is_worth_it = _is_usable(regions) & _is_upward(regions, config)
+        rows, regions = rows[is_worth_it][:MOST_AGAIN], regions[is_worth_it][:MOST_AGAIN]
+        if len(rows) == 0:
+            return hands, 0
+        second, _ = self._reader.read_beside(bgr, regions, ())
+        better = second.score > hands.score[rows]
+        kept = np.arange(len(hands))
+        kept[rows[better]] = len(hands) + np.flatnonzero(better)
+        return Landmarks.concatenate(hands, second)[kept], len(rows)
+
+    def _guesses(self, suggested: Regions | None, known: Regions, config: Config) -> Regions:
+        """The suggested regions that are worth a reading."""
+        if suggested is None:
+            return Regions.none()
+        suggested = suggested[_is_usable(suggested) & _is_upward(suggested, config)]
+        return drop_known(suggested, known)[: config.max_hands - len(known)]
 
     def _follow(self, hands: Landmarks, config: Config) -> None:
         """Remember where to look for these hands in the next image.

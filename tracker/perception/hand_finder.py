@@ -11,6 +11,7 @@ from tracker.perception.landmarks import LandmarkReader
 from tracker.perception.models import ModelStore
 from tracker.perception.palm_search import PalmSearch
 from tracker.perception.raise_memory import RaiseMemory
+from tracker.perception.regions import Regions, regions_from_landmarks
 
 #: What the palm model sees of a piece of the picture: a square of this side. It costs three
 #: quarters of the model's own 192 px and finds as much in tiles of 240 px.
@@ -39,6 +40,8 @@ class HandFinder:
         self._follower = self._open(config)
         self._memory = RaiseMemory()
         self._expected_px = _NOWHERE
+        self._suggested = Regions.none()
+        self._spared = 0
         self._budget: int | None = None
 
     def expect(self, boxes_px: FloatArray) -> None:
@@ -49,6 +52,18 @@ class HandFinder:
                 image, in which a raised hand would be.
         """
         self._expected_px = boxes_px
+
+    def suggest(self, landmarks_px: FloatArray) -> None:
+        """Look whether these hands are in the next image, without a search.
+
+        Args:
+            landmarks_px: Shape (G, 21, 2): about where they would be, in pixels of the full image.
+        """
+        self._suggested = regions_from_landmarks(landmarks_px)
+
+    def spare(self, places: int) -> None:
+        """Search so many places less in the next image, down to one."""
+        self._spared = places
 
     def set_budget(self, runs: int | None) -> None:
         """How many model runs an image may take from now on; None is as configured."""
@@ -71,7 +86,11 @@ class HandFinder:
         are read from the full image, so that their accuracy does not depend on it.
         """
         expected_px, self._expected_px = self._expected_px, _NOWHERE
-        found, last_rows = self._follower.step(image, self._config, expected_px, self._budget)
+        suggested, self._suggested = self._suggested, Regions.none()
+        spared, self._spared = self._spared, 0
+        found, last_rows = self._follower.step(
+            image, self._config, expected_px, self._budget, suggested, spared
+        )
         raised, measure, pending = self._memory.judge(
             image.stamp_ns, found, last_rows, (image.width, image.height), self._config
         )
@@ -81,6 +100,7 @@ class HandFinder:
         """Forget the hands of earlier images."""
         self._follower.reset()
         self._memory.reset()
+        self._suggested = Regions.none()
 
     def configure(self, config: Config) -> None:
         """Take over changed parameters, from the next image on; reopens the models if it must.

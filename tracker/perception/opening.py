@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tracker.config import Config
+from tracker.perception.arm_watch import ArmWatch
 from tracker.perception.body_detector import BodyDetector
 from tracker.perception.body_finder import BodyFinder
 from tracker.perception.detector import HandDetector
@@ -39,7 +40,7 @@ def open_detector(config: Config, store: ModelStore | None = None) -> HandDetect
     if config.pose_opinion == "full":
         return SecondOpinion(hands, _open_bodies(config, store, everyone=False), config)
     look = file_look(config) if config.pose_model else mediapipe_look(store, config)
-    return SecondOpinion(hands, OwnerFinder(look), config)
+    return SecondOpinion(hands, OwnerFinder(look), config, ArmWatch(look))
 
 
 def _open_bodies(config: Config, store: ModelStore, *, everyone: bool) -> BodyDetector:

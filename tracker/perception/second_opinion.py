@@ -19,9 +19,10 @@ from tracker.containers import (
     IntArray,
     PerceptionWork,
 )
+from tracker.perception.arm_watch import LOOK_PLACES, ArmWatch, hands_of_arms
 from tracker.perception.bodies import Bodies
 from tracker.perception.body_detector import BodyDetector
-from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.detector import GuidedDetector, HandDetector, PiecewiseDetector
 from tracker.perception.head_memory import HeadMemory
 from tracker.perception.owner_finder import OwnerFinder
 from tracker.perception.pose_hands import draw_hands
@@ -49,10 +50,19 @@ class SecondOpinion:
         hands: Finds hands.
         bodies: Finds people, in its own time.
         config: The pose group.
+        watch: Finds people whose arm may have gone up; None for nobody.
     """
 
-    def __init__(self, hands: HandDetector, bodies: BodyDetector, config: Config) -> None:
+    def __init__(
+        self,
+        hands: HandDetector,
+        bodies: BodyDetector,
+        config: Config,
+        watch: ArmWatch | None = None,
+    ) -> None:
         self._hands = hands
+        self._watch = watch
+        self._is_pressed = False
         self._bodies = bodies
         self._config = config
         self._memory = HeadMemory()
@@ -73,7 +83,8 @@ class SecondOpinion:
             self._hands.expect(boxes_px)
 
     def set_budget(self, runs: int | None) -> None:
-        """How many model runs the hands of an image may take."""
+        """How many model runs the hands of an image may take; arms are not watched then."""
+        self._is_pressed = runs is not None
         if isinstance(self._hands, PiecewiseDetector):
             self._hands.set_budget(runs)
 
@@ -90,12 +101,24 @@ class SecondOpinion:
         if isinstance(self._bodies, OwnerFinder):
             is_waiting = self._bodies.still_looking(hands, unowned_patience_s(hands, self._config))
             hands = replace(hands, raised=hands.raised & ~is_waiting)
+        self._watch_arms(image, hands, bodies[bodies.age_s == 0.0])
         at_head = partial(self._memory.judge, image.stamp_ns)
-        size = (image.width, image.height)
-        return weigh_opinions(hands, bodies, size, self._config, at_head)
+        return weigh_opinions(hands, bodies, _size(image), self._config, at_head)
+
+    def _watch_arms(self, image: CameraImage, hands: Hands, seen: Bodies) -> None:
+        """Tell the hand detector where hands are missing, and to make room for the next look."""
+        if self._watch is None or not isinstance(self._hands, GuidedDetector):
+            return
+        rests = self._is_pressed or len(seen) > 0
+        seen = Bodies.concatenate(seen, self._watch.find(image, rests=rests))
+        self._hands.suggest(hands_of_arms(hands, seen, _size(image), self._config))
+        if self._watch.looks_next and not self._is_pressed:
+            self._hands.spare(LOOK_PLACES)
 
     def reset(self) -> None:
         """Forget earlier images."""
+        if self._watch is not None:
+            self._watch.reset()
         self._hands.reset()
         self._bodies.reset()
         self._memory.reset()
@@ -109,6 +132,10 @@ class SecondOpinion:
         self._hands.configure(config)
         self._bodies.configure(config)
         self._config = config
+
+
+def _size(image: CameraImage) -> tuple[int, int]:
+    return image.width, image.height
 
 
 def unowned_patience_s(hands: Hands, config: Config) -> FloatArray:

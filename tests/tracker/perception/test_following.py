@@ -14,6 +14,7 @@ from tracker.perception.palm_search import Palms
 from tracker.perception.regions import Regions
 
 SIDE_PX = 100.0
+NOWHERE = np.zeros((0, 4))
 
 # In sides of the region. The steady landmarks span half a side, a little below the middle, so that
 # the region of these landmarks is the very region they were read from.
@@ -307,3 +308,83 @@ def test_hands_that_clasp_stay_two():
     points = np.stack([hand_at((100, 100)), hand_at((115, 100))])
     hands = Landmarks(points, np.array([0.6, 0.7]), np.zeros(2))
     assert first_of_each_hand(hands).all()
+
+
+def regions_at(*centers):
+    count = len(centers)
+    return Regions(np.array(centers, float), np.full(count, SIDE_PX), np.zeros(count))
+
+
+def test_a_suggested_hand_is_found_without_the_search_and_then_followed():
+    world = World((300, 200))
+    world.hidden_from_search = True
+    follower, config = follower_of(world), Config()
+    assert len(follower.step(image(0), config)) == 0
+    suggested = regions_at((310, 195), (500, 100))
+    hands = follower.step(image(1), config, NOWHERE, None, suggested)
+    assert wrists(hands) == [[300, 200]]
+    assert follower.rows.tolist() == [-1]
+    assert wrists(follower.step(image(2), config)) == [[300, 200]]
+    assert follower.rows.tolist() == [0]
+
+
+def test_a_suggestion_of_a_hand_that_is_followed_or_hangs_down_is_not_read():
+    world = World((300, 200))
+    follower, config = follower_of(world), Config()
+    follower.step(image(0), config)
+    hanging = Regions(np.array([[500.0, 200.0]]), np.array([SIDE_PX]), np.array([np.pi]))
+    suggested = Regions.concatenate(regions_at((305, 200)), hanging)
+    assert len(follower.step(image(1), config, NOWHERE, None, suggested)) == 1
+    assert follower.work.hands == 1
+
+
+def test_a_suggestion_that_is_none_hides_no_palm_at_its_place():
+    world = World((300, 200))
+    follower = follower_of(world)
+    suggested = regions_at((300 + 0.35 * SIDE_PX, 200))
+    hands = follower.step(image(0), Config(), NOWHERE, None, suggested)
+    assert wrists(hands) == [[300, 200]]
+
+
+def test_suggestions_and_other_models_take_the_place_of_searches():
+    world = World()
+    follower, config = follower_of(world), Config(search_regions_per_frame=4)
+    follower.step(image(0), config, NOWHERE, None, regions_at((300, 200)), 2)
+    assert follower.work.places == 1
+    follower.step(image(1), config, NOWHERE, None, None, 9)
+    assert follower.work.places == 1
+    follower.step(image(2), config)
+    assert follower.work.places == 4
+
+
+class Hazy(World):
+    """Reads a hand well only where its region is right to a few pixels."""
+
+    def read(self, regions):
+        hands = super().read(regions)
+        off = np.linalg.norm(hands.points_px.mean(axis=1) - HAND.mean(axis=0) * SIDE_PX
+                             - regions.center_px, axis=-1)  # fmt: skip
+        return Landmarks(hands.points_px, np.where(off < 5.0, hands.score, 0.3), hands.right)
+
+
+def test_a_hand_that_is_nearly_believed_in_is_read_again_from_its_landmarks():
+    world = Hazy((300, 200))
+    world.hidden_from_search = True
+    follower, config = follower_of(world), Config()
+    hands = follower.step(image(0), config, NOWHERE, None, regions_at((315, 200)))
+    assert wrists(hands) == [[300, 200]]
+    assert hands.score.tolist() == [0.9]
+    assert follower.work.hands == 2
+
+
+def test_followed_hands_and_hopeless_ones_are_not_read_again():
+    world = World((300, 200))
+    follower, config = follower_of(world), Config()
+    follower.step(image(0), config)
+    world.score = 0.3
+    world.hidden_from_search = True
+    assert len(follower.step(image(1), config)) == 0
+    assert follower.work.hands == 1
+    world.score = 0.05
+    follower.step(image(2), config, NOWHERE, None, regions_at((300, 200)))
+    assert follower.work.hands == 1

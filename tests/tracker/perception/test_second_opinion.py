@@ -6,6 +6,7 @@ import pytest
 from tracker.config import Config
 from tracker.containers import CameraImage, Hands, PerceptionWork
 from tracker.perception import HandDetector
+from tracker.perception.arm_watch import LOOK_PLACES, ArmWatch
 from tracker.perception.bodies import Bodies
 from tracker.perception.owner_finder import OwnerFinder
 from tracker.perception.second_opinion import SecondOpinion, weigh_opinions
@@ -209,3 +210,53 @@ def test_who_looks_piece_by_piece_is_told_where_and_how_much():
     assert hands.expected_px.tolist() == [[1.0, 2.0, 3.0, 4.0]]
     assert hands.runs == 3
     assert opinion.work.places == 2
+
+
+class Guided(Told):
+    """One that is told where hands are, and when to make room."""
+
+    def __init__(self, answer):
+        super().__init__(answer)
+        self.suggested, self.spared = [], []
+
+    def suggest(self, landmarks_px):
+        self.suggested.append(landmarks_px)
+
+    def spare(self, places):
+        self.spared.append(places)
+
+
+def watched(hands, people, images=4, **changes):
+    """Play images in which something moves at once, with a watch that sees the people."""
+    watch = ArmWatch(lambda bgr, window: people)
+    opinion = SecondOpinion(hands, OwnerFinder(lambda bgr, window: people), Config(), watch)
+    opinion.set_budget(changes.get("budget"))
+    for number in range(images):
+        hands.seen = np.zeros((480, 640, 3), np.uint8)
+        hands.seen[50:90, 130:170] = 220 if number else 0
+        opinion.find(CameraImage(number * 100_000_000, "", hands.seen))
+
+
+def test_an_arm_that_went_up_is_told_to_the_hands(body):
+    hands = Guided(Hands.none())
+    watched(hands, body(**UP), images=5)
+    assert [len(items) for items in hands.suggested] == [0, 0, 1, 0, 0]
+    np.testing.assert_allclose(hands.suggested[2][0, 0], UP["right_wrist"])
+    assert hands.spared == [LOOK_PLACES, LOOK_PLACES]  # before looks at images 2 and 5
+
+
+def test_no_arms_are_watched_where_time_presses(body):
+    hands = Guided(Hands.none())
+    watched(hands, body(**UP), images=8, budget=3)
+    assert not any(len(items) for items in hands.suggested)
+    assert hands.spared == []
+
+
+def test_the_owner_of_a_raised_hand_comes_before_other_arms(body, upright_hand):
+    hands = Guided(upright_hand((400, 300)))
+    watched(hands, body(), images=3)
+    assert hands.spared == [LOOK_PLACES, LOOK_PLACES]  # the look at image 2 is put off
+
+
+def test_a_detector_that_cannot_be_told_of_arms_is_left_alone(body):
+    watched(Told(Hands.none()), body(**UP))
