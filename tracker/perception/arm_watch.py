@@ -23,8 +23,8 @@ from tracker.perception.strips import upright_strips
 #: A strip is watched for so long after something moved in it: an arm takes half a second to go
 #: up, and not every look shows it.
 WATCH_S = 2.0
-#: One image of so many, at most, is looked at.
-LOOK_PERIOD = 3
+#: One image of so many, at most, is looked at; every third finds no more hands than every fifth.
+LOOK_PERIOD = 5
 #: Places of the palm search that take as long as a look.
 LOOK_PLACES = 2
 

@@ -69,7 +69,7 @@ def test_looks_keep_their_distance_and_end_after_the_movement(looks):
 def test_strips_take_turns(looks):
     watch = ArmWatch(looks)
     watch.find(picture(0))
-    for number in range(1, 10):
+    for number in range(1, 3 + 2 * LOOK_PERIOD):
         watch.find(picture(number, (80, 100), (560, 100)))
     assert sorted(looks.windows[:2]) == [STRIPS[0], STRIPS[-1]]
     assert looks.windows[2] == looks.windows[0]
