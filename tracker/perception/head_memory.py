@@ -11,7 +11,7 @@ import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray
 from tracker.perception.bodies import Bodies
-from tracker.perception.pose_rules import hands_at_head
+from tracker.perception.pose_rules import hands_at_head, owners_by_head
 
 #: A hand nearer than this is at the head beyond doubt, in shares of the clearance ...
 _BEYOND_DOUBT = 0.8
@@ -24,8 +24,8 @@ _REMEMBERED_S = 1.0
 class HeadMemory:
     """Judges the hands of one image after the other, as `hands_at_head` does one image's.
 
-    A hand that was at the head beyond doubt of late must get well clear of it; one within its own
-    length of that hand's place is the same.
+    A hand that was at the head beyond doubt of late must get well clear of it, and stays at it
+    while nobody knows whose it is. One within its own length of that hand's place is the same.
     """
 
     _wrist_px: FloatArray
@@ -60,10 +60,12 @@ class HeadMemory:
         apart_px = np.linalg.norm(hands.wrist_px[:, None] - wrist_px[None], axis=-1)
         was_at_head = (apart_px < hands.length_px[:, None]).any(axis=1)
         clearance = clearance_shoulders * np.where(was_at_head, _CLEAR_AGAIN, 1.0)
-        is_sure = hands_at_head(hands, bodies, owner, _BEYOND_DOUBT * clearance_shoulders)
+        beside = owners_by_head(hands, bodies, owner)
+        is_sure = hands_at_head(hands, bodies, beside, _BEYOND_DOUBT * clearance_shoulders)
+        is_sure |= was_at_head & (owner < 0)
         self._wrist_px = np.concatenate([wrist_px, hands.wrist_px[is_sure]])
         self._stamp_ns = np.append(stamps_ns, np.full(is_sure.sum(), stamp_ns))
-        return hands_at_head(hands, bodies, owner, clearance)
+        return is_sure | hands_at_head(hands, bodies, beside, clearance)
 
     def reset(self) -> None:
         """Forget all hands."""

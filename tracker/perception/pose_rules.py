@@ -156,6 +156,31 @@ def hands_below_shoulders(
     return answer
 
 
+def owners_by_head(hands: Hands, bodies: Bodies, owner: IntArray) -> IntArray:
+    """Whose hand could it be at whose head? Owners, completed by those whose wrist is not seen.
+
+    A pose model loses the arm that holds a telephone, bent as it is. What is at the head of a body
+    with a lost wrist, and fits that body, is likely to be its hand.
+
+    Args:
+        hands: What the hand models found.
+        bodies: Who is there.
+        owner: Shape (H,): rows of `bodies`, or -1.
+
+    Returns:
+        The same, with the body of the nearest head where no owner was known; -1 where none fits.
+    """
+    completed: IntArray = owner.copy()
+    for row in np.flatnonzero(owner < 0):
+        hand = hands[[row]]
+        fits = _fits(hand, bodies)[0] & ~bodies.is_visible[:, WRISTS].all(axis=1)
+        if fits.any():
+            knuckles = np.repeat(hand.landmarks_px[:, MIDDLE_ROOT], len(bodies), axis=0)
+            apart = head_distance_px(bodies, knuckles) / bodies.shoulder_px
+            completed[row] = np.where(fits, apart, np.inf).argmin()
+    return completed
+
+
 def hands_at_rest(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
     """Hands of unknown owners that lie at somebody's hip or knee, and fit that body.
 

@@ -61,6 +61,24 @@ def test_another_hand_has_not_been_at_the_head(judge):
     assert not judge(memory, HARDLY_CLEAR, 1)
 
 
+def test_a_hand_stays_at_the_head_while_nobody_knows_whose_it_is(judge, upright_hand):
+    memory, unknown = HeadMemory(), np.array([-1])
+    judge(memory, AT_EAR, 0)
+    answers = [
+        memory.judge(
+            number * PERIOD_NS, upright_hand(AT_EAR), Bodies.none(), unknown, CLEARANCE
+        ).item()
+        for number in range(1, 30)
+    ]
+    assert all(answers)
+    assert not judge(memory, CLEAR, 30)  # its owner has been seen
+
+
+def test_a_hand_at_the_head_of_a_body_whose_wrist_is_lost_is_at_it(body, upright_hand):
+    somebody, hand = body(right_wrist=None), upright_hand(AT_EAR)
+    assert HeadMemory().judge(0, hand, somebody, np.array([-1]), CLEARANCE).tolist() == [True]
+
+
 @pytest.mark.parametrize("stamps", [(5, 4), (0, 1)], ids=["time jumps back", "reset"])
 def test_hands_are_forgotten_with_the_images(judge, stamps):
     memory = HeadMemory()

@@ -13,6 +13,7 @@ from tracker.perception.pose_rules import (
     hands_at_rest,
     hands_below_shoulders,
     judge_arms,
+    owners_by_head,
 )
 
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}  # 30 px, 0.75 widths, above
@@ -99,6 +100,19 @@ def test_a_hand_passes_over_a_near_neighbor_to_its_owner(body, upright_hand):
     neighbor = replace(neighbor, points_px=neighbor.points_px - (110, 50))
     hand = upright_hand((38, 18), palm_px=3.0)  # 5.7 px, half the owner's shoulders
     assert find_owners(hand, Bodies.concatenate(neighbor, owner)).tolist() == [1]
+
+
+def test_a_hand_without_owner_may_be_that_of_the_nearest_head_whose_wrist_is_lost(
+    body, upright_hand
+):
+    lost, seen = body(right_wrist=None), body(shift_px=(40, 0))
+    people, at_ear = Bodies.concatenate(seen, lost), upright_hand((183, 73))
+    assert owners_by_head(at_ear, people, np.array([-1])).tolist() == [1]
+    assert owners_by_head(at_ear, people, np.array([0])).tolist() == [0]
+    assert owners_by_head(at_ear, seen, np.array([-1])).tolist() == [-1]
+    assert owners_by_head(at_ear, Bodies.none(), np.array([-1])).tolist() == [-1]
+    tiny = upright_hand((183, 73), palm_px=2.0)
+    assert owners_by_head(tiny, lost, np.array([-1])).tolist() == [-1]
 
 
 def test_the_reach_is_in_widths_of_the_shoulders(body, upright_hand):
