@@ -18,6 +18,9 @@ VOUCHING_WRIST_SHOULDERS = 0.45
 #: How long an own hand may be, in widths of the shoulders: drawn callers' measure 0.3 to 0.9, more
 #: if held to the camera, and less if closed. Neighbors much nearer or farther do not fit (guess).
 _OWN_HAND_SHOULDERS = (0.18, 1.2)
+#: Whose hand measures less, in widths of a body's shoulders, is farther away than that body; and
+#: what is so close to its nose, eyes or ears is its face (guesses).
+_FARTHER_SHOULDERS, _FACE_SHOULDERS = 0.3, 0.25
 #: A hand so close to a hip or a knee rests there (guess).
 _RESTING_SHOULDERS = 0.5
 
@@ -179,6 +182,26 @@ def owners_by_head(hands: Hands, bodies: Bodies, owner: IntArray) -> IntArray:
             apart = head_distance_px(bodies, knuckles) / bodies.shoulder_px
             completed[row] = np.where(fits, apart, np.inf).argmin()
     return completed
+
+
+def hands_on_faces(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
+    """Hands of unknown owners on the face of somebody nearer, which would hide them: ears, mostly.
+
+    Args:
+        hands: What the hand models found.
+        bodies: Who is there.
+        owner: Shape (H,): rows of `bodies`, or -1.
+
+    Returns:
+        Shape (H,).
+    """
+    answer = np.zeros(len(hands), dtype=bool)
+    for row in np.flatnonzero(owner < 0):
+        knuckles = np.repeat(hands.landmarks_px[[row], MIDDLE_ROOT], len(bodies), axis=0)
+        is_there = head_distance_px(bodies, knuckles) < _FACE_SHOULDERS * bodies.shoulder_px
+        is_farther = hands.length_px[row] < _FARTHER_SHOULDERS * bodies.shoulder_px
+        answer[row] = (is_there & is_farther).any()
+    return answer
 
 
 def hands_at_rest(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:

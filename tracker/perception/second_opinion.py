@@ -33,6 +33,7 @@ from tracker.perception.pose_rules import (
     hands_at_head,
     hands_at_rest,
     hands_below_shoulders,
+    hands_on_faces,
     judge_arms,
 )
 
@@ -171,7 +172,7 @@ def weigh_opinions(
     owner = find_owners(hands, bodies)
     refused = at_head(hands, bodies, owner, config.hand_head_clearance)
     refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
-    refused |= hands_at_rest(hands, bodies, owner)
+    refused |= hands_at_rest(hands, bodies, owner) | hands_on_faces(hands, bodies, owner)
     vouched = hands.pending & (find_owners(hands, bodies, VOUCHING_WRIST_SHOULDERS) >= 0)
     hands = replace(hands, raised=(hands.raised | vouched) & ~refused)
     if config.pose_opinion != "full":

@@ -12,6 +12,7 @@ from tracker.perception.pose_rules import (
     hands_at_head,
     hands_at_rest,
     hands_below_shoulders,
+    hands_on_faces,
     judge_arms,
     owners_by_head,
 )
@@ -113,6 +114,20 @@ def test_a_hand_without_owner_may_be_that_of_the_nearest_head_whose_wrist_is_los
     assert owners_by_head(at_ear, Bodies.none(), np.array([-1])).tolist() == [-1]
     tiny = upright_hand((183, 73), palm_px=2.0)
     assert owners_by_head(tiny, lost, np.array([-1])).tolist() == [-1]
+
+
+@pytest.mark.parametrize(
+    ("wrist", "palm_px", "on_face"),
+    [((189, 62), 5.0, True), ((189, 62), 8.0, False), ((170, 62), 5.0, False)],
+    ids=["an ear", "in front of the face", "beside it, of somebody farther"],
+)
+def test_a_hand_on_the_face_of_somebody_nearer_is_none(
+    body, upright_hand, wrist, palm_px, on_face
+):
+    hand = upright_hand(wrist, palm_px=palm_px)
+    assert hands_on_faces(hand, body(), np.array([-1])).tolist() == [on_face]
+    assert hands_on_faces(hand, body(), np.array([0])).tolist() == [False]
+    assert hands_on_faces(hand, Bodies.none(), np.array([-1])).tolist() == [False]
 
 
 def test_the_reach_is_in_widths_of_the_shoulders(body, upright_hand):
