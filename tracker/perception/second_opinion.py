@@ -100,7 +100,8 @@ class SecondOpinion:
             self._bodies.expect(hands)
         bodies = self._bodies.find(image)
         if isinstance(self._bodies, OwnerFinder):
-            is_waiting = self._bodies.still_looking(hands, unowned_patience_s(hands, self._config))
+            patience_s = unowned_patience_s(hands, image.height, self._config)
+            is_waiting = self._bodies.still_looking(hands, patience_s)
             hands = replace(hands, raised=hands.raised & ~is_waiting)
         self._watch_arms(image, hands, bodies[bodies.age_s == 0.0])
         at_head = partial(self._memory.judge, image.stamp_ns)
@@ -139,10 +140,15 @@ def _size(image: CameraImage) -> tuple[int, int]:
     return image.width, image.height
 
 
-def unowned_patience_s(hands: Hands, config: Config) -> FloatArray:
-    """For how long each hand waits for an owner, shape (H,): a small unsure one for ever."""
+def unowned_patience_s(hands: Hands, height_px: int, config: Config) -> FloatArray:
+    """For how long each hand waits for an owner, shape (H,): a small unsure one for ever.
+
+    A large one counts at once, unless the lower edge of the picture cuts its forearm off: people
+    who talk near the camera show their palms there for a moment.
+    """
+    is_cut_off = hands.wrist_px[:, 1] + hands.length_px > height_px
     patience_s = np.where(hands.score < config.raised_score_min, np.inf, config.unowned_patience_s)
-    return np.where(hands.length_px < config.owner_hand_px, patience_s, 0.0)
+    return np.where(is_cut_off | (hands.length_px < config.owner_hand_px), patience_s, 0.0)
 
 
 def weigh_opinions(

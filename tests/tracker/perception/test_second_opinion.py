@@ -96,6 +96,12 @@ def test_a_small_hand_without_an_owner_waits_longer(upright_hand):
     assert after == [10, 2]
 
 
+def test_a_large_hand_waits_as_long_where_the_lower_edge_cuts_its_forearm_off(upright_hand):
+    config = Config(unowned_patience_s=1.0)
+    hand = upright_hand((148, 420), palm_px=40.0)  # 76 px long
+    assert raised_after(hand, lambda bgr, window: Bodies.none(), config) == 10
+
+
 def test_a_small_unsure_hand_without_an_owner_never_counts(upright_hand):
     hand = replace(upright_hand((148, 70)), score=[0.7])
     assert raised_after(hand, lambda bgr, window: Bodies.none(), Config()) is None
