@@ -250,8 +250,8 @@ class Config(BaseModel):
     )  # fmt: skip
     owner_hand_px: float = _parameter(
         64.0, "`pose_opinion: veto`: a hand shorter than this (at 1.3 m, with the default camera: "
-        "nearer people may not fit into the picture), or whose forearm the lower edge cuts off, and "
-        "whose owner is not found, counts as raised ...",
+        "nearer people may not fit into the picture), or whose forearm the lower edge cuts off, "
+        "and whose owner is not found, counts as raised ...",
         unit="px", group="pose", live=True, ge=0.0, le=10000.0,
     )  # fmt: skip
     unowned_patience_s: float = _parameter(
