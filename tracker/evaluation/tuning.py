@@ -77,10 +77,17 @@ def tune(
     first = {name: getattr(base, name) for name in names} if done == 0 else {}
     first = {name: value for name, value in first.items() if within_search(name, value)}
     shares = [len(part) for part in np.array_split(np.arange(max(trials - done, 0)), jobs)]
-    firsts = [first, *[{}] * (len(shares) - 1)]
     work = [
-        (objective, tuple(names), base, storage, share, (seed, done, worker), given)
-        for worker, (share, given) in enumerate(zip(shares, firsts, strict=True))
+        (
+            objective,
+            tuple(names),
+            base,
+            storage,
+            share,
+            (seed, done, worker),
+            first if worker == 0 else {},
+        )
+        for worker, share in enumerate(shares)
         if share
     ]
     if executor is None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray
-from tracker.perception.bodies import HEAD, HIPS, KNEES, SHOULDERS, WRISTS, Bodies
+from tracker.perception.bodies import HEAD, HIPS, KNEES, SHOULDERS, WRISTS, Bodies, Joint
 from tracker.perception.raise_rules import MIDDLE_ROOT
 
 #: A hand belongs to the body with a wrist so close to its own, in widths of the shoulders: the
@@ -94,9 +94,23 @@ def arms_without_hand(hands: Hands, bodies: Bodies) -> BoolArray:
 
 def _wrists_apart_px(hands: Hands, bodies: Bodies) -> FloatArray:
     """From each hand to each wrist of each body, shape (H, P, 2); infinite for those not seen."""
-    wrists = bodies.points_px[:, WRISTS]
-    apart = np.linalg.norm(hands.wrist_px[:, None, None] - wrists, axis=-1)
-    return np.where(bodies.is_visible[:, WRISTS], apart, np.inf)
+    return _apart_px(hands.wrist_px, bodies, WRISTS)
+
+
+def _head_apart_shoulders(hands: Hands, bodies: Bodies) -> FloatArray:
+    """From each hand's fingers' roots to each body's nose, eyes or ears, whichever is nearest.
+
+    Returns:
+        Shape (H, P), in widths of the shoulders; infinite where nothing of the head is seen.
+    """
+    knuckles_px = hands.landmarks_px[:, MIDDLE_ROOT]
+    return np.asarray(_apart_px(knuckles_px, bodies, HEAD).min(axis=-1) / bodies.shoulder_px)
+
+
+def _apart_px(points_px: FloatArray, bodies: Bodies, joints: list[Joint]) -> FloatArray:
+    """From each point to each such joint of each body, (H, P, J); infinite for those not seen."""
+    apart = np.linalg.norm(points_px[:, None, None] - bodies.points_px[:, joints], axis=-1)
+    return np.where(bodies.is_visible[:, joints], apart, np.inf)
 
 
 def _fits(hands: Hands, bodies: Bodies) -> BoolArray:
@@ -173,15 +187,11 @@ def owners_by_head(hands: Hands, bodies: Bodies, owner: IntArray) -> IntArray:
     Returns:
         The same, with the body of the nearest head where no owner was known; -1 where none fits.
     """
-    completed: IntArray = owner.copy()
-    for row in np.flatnonzero(owner < 0):
-        hand = hands[[row]]
-        fits = _fits(hand, bodies)[0] & ~bodies.is_visible[:, WRISTS].all(axis=1)
-        if fits.any():
-            knuckles = np.repeat(hand.landmarks_px[:, MIDDLE_ROOT], len(bodies), axis=0)
-            apart = head_distance_px(bodies, knuckles) / bodies.shoulder_px
-            completed[row] = np.where(fits, apart, np.inf).argmin()
-    return completed
+    if len(bodies) == 0:
+        return owner
+    may_be = _fits(hands, bodies) & ~bodies.is_visible[:, WRISTS].all(axis=1)
+    nearest = np.where(may_be, _head_apart_shoulders(hands, bodies), np.inf).argmin(axis=1)
+    return np.where((owner < 0) & may_be.any(axis=1), nearest, owner)
 
 
 def hands_on_faces(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
@@ -195,13 +205,9 @@ def hands_on_faces(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
     Returns:
         Shape (H,).
     """
-    answer = np.zeros(len(hands), dtype=bool)
-    for row in np.flatnonzero(owner < 0):
-        knuckles = np.repeat(hands.landmarks_px[[row], MIDDLE_ROOT], len(bodies), axis=0)
-        is_there = head_distance_px(bodies, knuckles) < _FACE_SHOULDERS * bodies.shoulder_px
-        is_farther = hands.length_px[row] < _FARTHER_SHOULDERS * bodies.shoulder_px
-        answer[row] = (is_there & is_farther).any()
-    return answer
+    is_there = _head_apart_shoulders(hands, bodies) < _FACE_SHOULDERS
+    is_farther = hands.length_px[:, None] < _FARTHER_SHOULDERS * bodies.shoulder_px
+    return np.asarray((owner < 0) & (is_there & is_farther).any(axis=1))
 
 
 def hands_at_rest(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
@@ -218,11 +224,7 @@ def hands_at_rest(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
     Returns:
         Shape (H,).
     """
-    joints = [*HIPS, *KNEES]
-    ends = np.stack([hands.wrist_px, hands.landmarks_px[:, MIDDLE_ROOT]], axis=1)
-    apart = np.linalg.norm(ends[:, None, :, None] - bodies.points_px[:, None, joints], axis=-1)
-    apart_px = np.where(bodies.is_visible[:, joints], apart.min(axis=2), np.inf).min(
-        axis=-1, initial=np.inf
-    )
+    ends_px = hands.wrist_px, hands.landmarks_px[:, MIDDLE_ROOT]
+    apart_px = np.minimum(*(_apart_px(end, bodies, [*HIPS, *KNEES]) for end in ends_px)).min(-1)
     close = apart_px < _RESTING_SHOULDERS * bodies.shoulder_px
     return np.asarray((owner < 0) & (close & _fits(hands, bodies)).any(axis=1))
