@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 from typing import Any
 
@@ -19,7 +19,9 @@ from tracker.containers.arrays import (
     check_rows,
     constant,
     fill,
+    sealed,
     select,
+    trusted,
 )
 from tracker.errors import ShapeError
 
@@ -129,21 +131,27 @@ class Measurements:
         values, covariance = np.empty((count, 2)), np.zeros((count, 2, 2))
         fill("bearing_rad", values[:, 0], bearing)
         fill("range_m", values[:, 1], range_m)
-        fill("bearing_std_rad", covariance[:, 0, 0], np.square(bearing_std_rad))
-        fill("range_std_m", covariance[:, 1, 1], np.square(range_std_m))
+        fill("bearing_std_rad", covariance[:, 0, 0], bearing_std_rad)
+        fill("range_std_m", covariance[:, 1, 1], range_std_m)
+        covariance *= covariance
         np.copyto(covariance[:, 1, 1], 1.0, where=np.isnan(values[:, 1]))
         pose = np.empty((count, 3))
         fill("sensor_pose", pose, sensor_pose)
-        return Measurements(
-            values=values,
-            covariance=covariance,
+        measured = trusted(
+            Measurements,
+            values=sealed(values),
+            covariance=sealed(covariance),
             model=constant(MeasurementModel.POLAR, (count,), COUNTS),
-            sensor_pose=pose,
+            sensor_pose=sealed(pose),
             raised=_column("raised", raised, count, FLAGS),
             person=_column("person", person, count, COUNTS),
             hand=_column("hand", hand, count, COUNTS),
-            appearance=None if appearance is None else np.asarray(appearance, np.float64),
+            sensor_pose_covariance=constant(0.0, (count, 3, 3)),
+            appearance=None,
         )
+        if appearance is None:
+            return measured
+        return replace(measured, appearance=np.asarray(appearance, np.float64))
 
     @staticmethod
     def cartesian(
@@ -204,7 +212,7 @@ def _column(name: str, value: ArrayLike, count: int, dtype: np.dtype[Any]) -> ND
         return constant(value, (count,), dtype)
     column = np.empty(count, dtype)
     fill(name, column, value)
-    return column
+    return sealed(column)
 
 
 def _joined_appearance(parts: tuple[Measurements, ...]) -> FloatArray | None:

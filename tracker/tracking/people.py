@@ -6,54 +6,104 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracker.containers import BoolArray, FloatArray, IntArray, Tracks
+from tracker.containers.arrays import frozen, sealed, trusted
 from tracker.tracking.appearance import Appearance
 from tracker.tracking.modes import Belief
 from tracker.tracking.streaks import Streaks
 
+#: Rows of `People.spans`, `counts` and `flags`.
+EXISTENCE, MISSING_S = range(2)
+ID, BORN_NS, DETECTED, MISSED, DETECTIONS, RAISED_SINCE_NS, SEEN_NS, CALLED_NS, HAND = range(9)
+RAISED, CONFIRMED = range(2)
+
+
+class _Row:
+    """One row of one of the tables, by its own name."""
+
+    def __init__(self, table: str, row: int) -> None:
+        self.table, self.row = table, row
+
+    def __get__(self, people: People, kind: type[People]) -> NDArray[Any]:
+        row: NDArray[Any] = getattr(people, self.table)[self.row]
+        return row
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class People:
-    """Stacked state of all tracks; row i of each array is the same person.
+    """Stacked state of all tracks; row i of each array named below is the same person.
+
+    Few arrays hold it, one for each type of number, so that compiled loops take it as it is. All
+    are read-only.
 
     Attributes:
-        id: Shape (N,), int64; 0 for bystanders, whose hand has never been up.
         belief: Where they are, in each mode of motion.
+        spans: Shape (2, N): probabilities and durations.
+        counts: Shape (9, N), int64: identities, numbers and stamps.
+        flags: Shape (2, N), bool.
+        recent: Shape (N, W), bool: raised-hand detections of the last W frames, newest first.
+        appearance: What they wear.
+        id: Shape (N,), int64; 0 for bystanders, whose hand has never been up.
         existence: Shape (N,): probability that somebody is there.
         confirmed: Shape (N,), bool.
-        recent: Shape (N, W), bool: raised-hand detections of the last W frames, newest first.
+        detected: Shape (N,): the streaks' counters and their word, as `Streaks` has them.
+        missed: Shape (N,).
+        raised: Shape (N,), bool.
         detections: Shape (N,): raised-hand detections in all.
-        streaks: The raised-hand counters.
         raised_since_ns: Shape (N,): when the hand last began to count as raised; -1 never.
         born_ns: Shape (N,): stamp of the first measurement.
         seen_ns: Shape (N,): stamp of the last measurement of any kind.
         called_ns: Shape (N,): stamp of the last raised-hand measurement.
         missing_s: Shape (N,): time in which nothing showed them although they were in view.
         hand: Shape (N,): row of this frame's `Hands`, or -1.
-        appearance: What they wear.
     """
 
-    id: IntArray
     belief: Belief
-    existence: FloatArray
-    confirmed: BoolArray
+    spans: FloatArray
+    counts: IntArray
+    flags: BoolArray
     recent: BoolArray
-    detections: IntArray
-    streaks: Streaks
-    raised_since_ns: IntArray
-    born_ns: IntArray
-    seen_ns: IntArray
-    called_ns: IntArray
-    missing_s: FloatArray
-    hand: IntArray
     appearance: Appearance
 
+    id = _Row("counts", ID)
+    existence = _Row("spans", EXISTENCE)
+    confirmed = _Row("flags", CONFIRMED)
+    raised = _Row("flags", RAISED)
+    detected = _Row("counts", DETECTED)
+    missed = _Row("counts", MISSED)
+    detections = _Row("counts", DETECTIONS)
+    raised_since_ns = _Row("counts", RAISED_SINCE_NS)
+    born_ns = _Row("counts", BORN_NS)
+    seen_ns = _Row("counts", SEEN_NS)
+    called_ns = _Row("counts", CALLED_NS)
+    missing_s = _Row("spans", MISSING_S)
+    hand = _Row("counts", HAND)
+
+    def __post_init__(self) -> None:
+        modes = self.belief.weight, self.belief.mean, self.belief.covariance
+        for array in (*modes, self.spans, self.counts, self.flags, self.recent):
+            sealed(array)
+
     def __len__(self) -> int:
-        return len(self.id)
+        people: int = self.counts.shape[1]
+        return people
 
     def __getitem__(self, rows: Any) -> People:
-        return People(*(getattr(self, name)[rows] for name in _NAMES))
+        return People(
+            self.belief[rows],
+            self.spans[:, rows],
+            self.counts[:, rows],
+            self.flags[:, rows],
+            self.recent[rows],
+            self.appearance[rows],
+        )
+
+    @property
+    def streaks(self) -> Streaks:
+        """The raised-hand counters."""
+        return Streaks(self.detected, self.missed, self.raised)
 
     @property
     def is_customer(self) -> BoolArray:
@@ -79,23 +129,14 @@ class People:
     ) -> People:
         """People who have just been seen for the first time; nothing is counted yet."""
         count = len(ids)
-        now = np.full(count, stamp_ns, dtype=np.int64)
-        return People(
-            id=ids,
-            belief=belief,
-            existence=existence,
-            confirmed=np.zeros(count, dtype=bool),
-            recent=np.zeros((count, window), dtype=bool),
-            detections=np.zeros(count, dtype=np.int64),
-            streaks=Streaks.begin(count),
-            raised_since_ns=np.full(count, -1, dtype=np.int64),
-            born_ns=now,
-            seen_ns=now,
-            called_ns=now,
-            missing_s=np.zeros(count),
-            hand=np.full(count, -1, dtype=np.int64),
-            appearance=appearance,
-        )
+        spans, counts = np.zeros((2, count)), np.zeros((9, count), dtype=np.int64)
+        spans[EXISTENCE] = existence
+        counts[ID] = ids
+        counts[[BORN_NS, SEEN_NS, CALLED_NS]] = stamp_ns
+        counts[[RAISED_SINCE_NS, HAND]] = -1
+        flags = np.zeros((2, count), dtype=bool)
+        recent = np.zeros((count, window), dtype=bool)
+        return People(belief, spans, counts, flags, recent, appearance)
 
     @staticmethod
     def nobody(window: int, modes: int) -> People:
@@ -106,34 +147,46 @@ class People:
 
     def append(self, other: People) -> People:
         """Rows of both, in order."""
-        joined: dict[str, Any] = {}
-        for name in _NAMES:
-            mine, theirs = getattr(self, name), getattr(other, name)
-            is_array = isinstance(mine, np.ndarray)
-            joined[name] = np.concatenate([mine, theirs]) if is_array else mine.append(theirs)
-        return People(**joined)
+        return People(
+            self.belief.append(other.belief),
+            np.concatenate([self.spans, other.spans], axis=1),
+            np.concatenate([self.counts, other.counts], axis=1),
+            np.concatenate([self.flags, other.flags], axis=1),
+            np.concatenate([self.recent, other.recent]),
+            self.appearance.append(other.appearance),
+        )
 
     def replace(self, **changes: Any) -> People:
-        """The same people with some arrays changed."""
-        return replace(self, **changes)
+        """The same people with some arrays changed, the streaks' among them."""
+        changed: dict[str, Any] = {}
+        if "streaks" in changes:
+            streaks = changes.pop("streaks")
+            changes |= {item.name: getattr(streaks, item.name) for item in fields(streaks)}
+        for name, value in changes.items():
+            place = People.__dict__[name]
+            if not isinstance(place, _Row):
+                changed[name] = value
+                continue
+            if place.table not in changed:
+                changed[place.table] = getattr(self, place.table).copy()
+            changed[place.table][place.row] = value
+        return replace(self, **changed)
 
     def as_tracks(self, stamp_ns: int, selected_id: int | None) -> Tracks:
         """What the outside sees of them."""
         mean, covariance = self.belief.merged()
-        return Tracks(
+        return trusted(
+            Tracks,
             stamp_ns=stamp_ns,
             id=self.id,
-            mean=mean,
-            covariance=covariance,
+            mean=frozen(mean),
+            covariance=frozen(covariance),
             existence=self.existence,
             confirmed=self.confirmed,
-            raised=self.streaks.raised,
+            raised=self.raised,
             raised_since_ns=self.raised_since_ns,
-            age_s=(stamp_ns - self.born_ns) / 1e9,
-            unseen_s=(stamp_ns - self.seen_ns) / 1e9,
+            age_s=frozen((stamp_ns - self.born_ns) / 1e9),
+            unseen_s=frozen((stamp_ns - self.seen_ns) / 1e9),
             hand=self.hand,
             selected_id=selected_id,
         )
-
-
-_NAMES = tuple(item.name for item in fields(People))

@@ -35,7 +35,7 @@ class Selector:
         """
         if self._keeps(people, stamp_ns):
             return self._chosen_id
-        calling = people.streaks.raised
+        calling = people.raised
         if self._released:  # they are served again once the hand has been down and up
             self._released &= set(people.id[calling].tolist())
             calling = calling & ~np.isin(people.id, list(self._released))
@@ -76,7 +76,7 @@ class Selector:
         ids = people.id.tolist()
         if self._chosen_id not in ids:
             return False
-        if people.streaks.raised[ids.index(self._chosen_id)]:
+        if people.raised[ids.index(self._chosen_id)]:
             self._last_raised_ns = stamp_ns
             return True
         held_ns = stamp_ns - self._last_raised_ns

@@ -13,7 +13,7 @@ from tracker.tracking import frame
 from tracker.tracking.admission import hand_bias, is_semidefinite
 from tracker.tracking.compiled.kernel import track_frame
 from tracker.tracking.compiled.settings import settings_of
-from tracker.tracking.compiled.state import State, people_of, state_of
+from tracker.tracking.compiled.state import people_of, state_of
 from tracker.tracking.motion import motion_over
 from tracker.tracking.people import People
 from tracker.tracking.view import View
@@ -22,15 +22,9 @@ _NOTHING = np.zeros(0)
 
 
 class CompiledTrack:
-    """`tracker.tracking.frame.track` for the frames of one tracker, one after the other.
-
-    What it gave last is remembered as its loops want it, which spares laying the same people out
-    again; anybody else's are.
-    """
+    """`tracker.tracking.frame.track`; remembers the numbers of the configuration it met last."""
 
     def __init__(self) -> None:
-        self._people: People | None = None
-        self._state: State | None = None
         self._config: Config | None = None
         self._settings = _NOTHING
 
@@ -53,20 +47,15 @@ class CompiledTrack:
             )
         if config is not self._config:
             self._config, self._settings = config, settings_of(config)
-        state = self._state
-        if state is None or people is not self._people:
-            state = state_of(people)
         motion = motion_over(dt_s, config)
         state, mean, covariance, next_id = track_frame(
-            *state,
+            *state_of(people),
             *_claims(measurements),
             *(motion.transition, motion.noise, motion.switching),
             *(_numbers(view), _numbers(scan_view), scan_view is not None),
             *(next_id, dt_s, stamp_ns, hand_bias(dt_s, config), self._settings),
         )
-        people = people_of(state, mean, covariance)
-        self._people, self._state = people, state
-        return people, next_id
+        return people_of(state, mean, covariance), next_id
 
 
 def _claims(measurements: Measurements) -> Iterator[np.ndarray]:

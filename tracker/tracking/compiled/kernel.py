@@ -22,16 +22,9 @@ from tracker.tracking.compiled.prediction import merge_modes, predict, visibilit
 from tracker.tracking.compiled.renewal import renew
 from tracker.tracking.compiled.settings import Settings, named
 from tracker.tracking.compiled.sources import named_after_sources
-from tracker.tracking.compiled.state import (
-    EXISTENCE,
-    HAND,
-    ID,
-    MISSED,
-    MISSING_S,
-    State,
-    selected,
-)
+from tracker.tracking.compiled.state import State, selected
 from tracker.tracking.observation import DETECTION_MIN, RAISES_AGAIN
+from tracker.tracking.people import EXISTENCE, HAND, ID, MISSED, MISSING_S
 
 
 @loop

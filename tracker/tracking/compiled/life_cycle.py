@@ -7,7 +7,9 @@ import numpy as np
 from tracker.containers import BoolArray, FloatArray, IntArray
 from tracker.tracking.compiled.loop import loop
 from tracker.tracking.compiled.settings import Settings
-from tracker.tracking.compiled.state import (
+from tracker.tracking.compiled.state import State
+from tracker.tracking.life_cycle import EXISTENCE_MIN, LOG_EVIDENCE_MAX
+from tracker.tracking.people import (
     BORN_NS,
     CALLED_NS,
     CONFIRMED,
@@ -20,9 +22,7 @@ from tracker.tracking.compiled.state import (
     RAISED,
     RAISED_SINCE_NS,
     SEEN_NS,
-    State,
 )
-from tracker.tracking.life_cycle import EXISTENCE_MIN, LOG_EVIDENCE_MAX
 
 
 @loop

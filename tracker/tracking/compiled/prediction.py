@@ -8,13 +8,13 @@ from tracker.containers import FloatArray
 from tracker.tracking.compiled.loop import loop
 from tracker.tracking.view import ARM_M, DEPTH_MIN_M, HALF_BODY_M, OCCLUDED
 
-_TURN = 2.0 * np.pi
+TURN = 2.0 * np.pi
 
 
 @loop
 def wrapped(angle_rad: float) -> float:
     """The same direction in [-pi, pi)."""
-    return angle_rad - _TURN * np.floor((angle_rad + np.pi) / _TURN)
+    return angle_rad - TURN * np.floor((angle_rad + np.pi) / TURN)
 
 
 @loop
@@ -144,7 +144,7 @@ def visibility(mean: FloatArray, view: FloatArray) -> FloatArray:
         range_m[person] = max(np.hypot(dx, dy), 0.1)
         bearing_rad[person] = np.arctan2(dy, dx)
     for person in range(people):
-        if fov_rad < _TURN:
+        if fov_rad < TURN:
             # Whoever stands on the edge is half in view.
             reach = np.arctan2(ARM_M, range_m[person])
             off_axis = abs(wrapped(bearing_rad[person] - yaw_rad))

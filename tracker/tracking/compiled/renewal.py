@@ -9,7 +9,9 @@ from tracker.tracking.compiled.life_cycle import count_detections, decide_who_st
 from tracker.tracking.compiled.loop import loop
 from tracker.tracking.compiled.pairing import pose_doubt
 from tracker.tracking.compiled.settings import Settings
-from tracker.tracking.compiled.state import (
+from tracker.tracking.compiled.state import State, copy_person, selected, with_room
+from tracker.tracking.life_cycle import BIRTH_EXISTENCE
+from tracker.tracking.people import (
     BORN_NS,
     CALLED_NS,
     CONFIRMED,
@@ -21,12 +23,7 @@ from tracker.tracking.compiled.state import (
     RAISED,
     RAISED_SINCE_NS,
     SEEN_NS,
-    State,
-    copy_person,
-    empty,
-    selected,
 )
-from tracker.tracking.life_cycle import BIRTH_EXISTENCE
 from tracker.tracking.sensor_model import RANGE_FLOOR_M
 from tracker.tracking.twins import SILENT_S, TOGETHER_S
 
@@ -54,7 +51,7 @@ def renew(
     """Let people in, bring twins together, let those go who are not there any more.
 
     Args:
-        state: N people after this instant.
+        state: N people after this instant; may be changed.
         place: Shape (N, 4): their means over the modes.
         is_called: Shape (N,): a raised hand was theirs.
         is_seen: Shape (N,): any measurement was theirs.
@@ -73,10 +70,8 @@ def renew(
     Returns:
         Everybody from now on, and the identity of the next customer after them.
     """
-    modes, known = state.weight.shape
-    room = empty(modes, known + len(others) + len(raised), state.recent.shape[1])
-    for row in range(known):
-        copy_person(state, row, room, row)
+    known = state.weight.shape[1]
+    room = with_room(state, len(others) + len(raised))
     people = known
     for claim in others:  # a lowered hand alone is nobody
         if hand[claim] < 0:

@@ -1,4 +1,4 @@
-"""What is known of everybody, laid out for loops: few arrays, one for each type of number."""
+"""What is known of everybody, as loops take it: the arrays of `People`, all but the clothes."""
 
 from __future__ import annotations
 
@@ -7,20 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.containers.arrays import sealed
 from tracker.tracking.appearance import Appearance
 from tracker.tracking.compiled.loop import loop
 from tracker.tracking.modes import Belief
 from tracker.tracking.people import People
-from tracker.tracking.streaks import Streaks
-
-#: Rows of `spans`, `counts` and `flags`; the names are those of `People` and `Streaks`.
-EXISTENCE, MISSING_S = range(2)
-ID, BORN_NS, DETECTED, MISSED, DETECTIONS, RAISED_SINCE_NS, SEEN_NS, CALLED_NS, HAND = range(9)
-RAISED, CONFIRMED = range(2)
 
 
 class State(NamedTuple):
-    """N people in K modes of motion, all but the clothes.
+    """N people in K modes of motion; the rows of the tables are named beside `People`.
 
     Attributes:
         weight: Shape (K, N).
@@ -43,17 +38,15 @@ class State(NamedTuple):
 
 def state_of(people: People) -> State:
     """People as loops want them."""
-    streaks, belief = people.streaks, people.belief
-    streak = (streaks.detected, streaks.missed, people.detections)
-    stamps_ns = (people.raised_since_ns, people.seen_ns, people.called_ns)
+    flat, belief = np.ascontiguousarray, people.belief
     return State(
-        np.ascontiguousarray(belief.weight),
-        np.ascontiguousarray(belief.mean),
-        np.ascontiguousarray(belief.covariance),
-        np.array((people.existence, people.missing_s)),
-        np.array((people.id, people.born_ns, *streak, *stamps_ns, people.hand)),
-        np.array((streaks.raised, people.confirmed)),
-        np.ascontiguousarray(people.recent),
+        flat(belief.weight),
+        flat(belief.mean),
+        flat(belief.covariance),
+        flat(people.spans),
+        flat(people.counts),
+        flat(people.flags),
+        flat(people.recent),
     )
 
 
@@ -65,28 +58,14 @@ def people_of(state: State, mean: FloatArray, covariance: FloatArray) -> People:
         mean: Shape (N, 4): over the modes.
         covariance: Shape (N, 4, 4).
     """
-    for array in (*state, mean, covariance):
-        array.setflags(write=False)  # once for all that looks into them
-    existence, missing_s = state.spans
-    id, born_ns, detected, missed, detections, raised_since_ns, seen_ns, called_ns, hand = (
-        state.counts
-    )
-    raised, confirmed = state.flags
+    one = sealed(mean), sealed(covariance)
     return People(
-        id=id,
-        belief=Belief(state.weight, state.mean, state.covariance, (mean, covariance)),
-        existence=existence,
-        confirmed=confirmed,
-        recent=state.recent,
-        detections=detections,
-        streaks=Streaks(detected, missed, raised),
-        raised_since_ns=raised_since_ns,
-        born_ns=born_ns,
-        seen_ns=seen_ns,
-        called_ns=called_ns,
-        missing_s=missing_s,
-        hand=hand,
-        appearance=Appearance.unknown(len(id)),
+        Belief(state.weight, state.mean, state.covariance, one),
+        state.spans,
+        state.counts,
+        state.flags,
+        state.recent,
+        Appearance.unknown(len(mean)),
     )
 
 
@@ -124,8 +103,41 @@ def copy_person(source: State, row: int, target: State, to: int) -> None:
 
 
 @loop
+def with_room(state: State, more: int) -> State:
+    """The same people, with room for so many more; nothing is copied for nobody."""
+    if more == 0:
+        return state
+    modes, people = state.weight.shape
+    room = empty(modes, people + more, state.recent.shape[1])
+    for mode in range(modes):
+        for row in range(people):
+            room.weight[mode, row] = state.weight[mode, row]
+            for i in range(4):
+                room.mean[mode, row, i] = state.mean[mode, row, i]
+                for j in range(4):
+                    room.covariance[mode, row, i, j] = state.covariance[mode, row, i, j]
+    _copy_all(state.spans, room.spans)
+    _copy_all(state.counts, room.counts)
+    _copy_all(state.flags, room.flags)
+    _copy_all(state.recent, room.recent)
+    return room
+
+
+@loop
+def _copy_all(source: np.ndarray, target: np.ndarray) -> None:
+    """Write a table into the upper left of another one."""
+    rows, columns = source.shape
+    for row in range(rows):
+        for column in range(columns):
+            at = np.uint64(row), np.uint64(column)  # nothing is counted from the end
+            target[at] = source[at]
+
+
+@loop
 def selected(state: State, keep: BoolArray) -> State:
-    """Those who are kept."""
+    """Those who are kept; nothing is copied if that is all."""
+    if keep.all():
+        return state
     chosen = empty(len(state.weight), keep.sum(), state.recent.shape[1])
     to = 0
     for row in range(len(keep)):
