@@ -18,9 +18,8 @@ VOUCHING_WRIST_SHOULDERS = 0.45
 #: How long an own hand may be, in widths of the shoulders: drawn callers' measure 0.3 to 0.9, more
 #: if held to the camera, and less if closed. Neighbors much nearer or farther do not fit (guess).
 _OWN_HAND_SHOULDERS = (0.18, 1.2)
-#: Whose hand measures less, in widths of a body's shoulders, is farther away than that body; and
-#: what is so close to its nose, eyes or ears is its face (guesses).
-_FARTHER_SHOULDERS, _FACE_SHOULDERS = 0.3, 0.25
+#: What is so close to the nose, eyes or ears, in widths of the shoulders, is on the face (guess).
+_FACE_SHOULDERS = 0.25
 #: A hand so close to a hip or a knee rests there (guess).
 _RESTING_SHOULDERS = 0.5
 
@@ -195,7 +194,9 @@ def owners_by_head(hands: Hands, bodies: Bodies, owner: IntArray) -> IntArray:
 
 
 def hands_on_faces(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
-    """Hands of unknown owners on the face of somebody nearer, which would hide them: ears, mostly.
+    """Hands of unknown owners on a face: ears and mouths, mostly.
+
+    One too large for that body is nearer, and hides the face; the face would hide a smaller one.
 
     Args:
         hands: What the hand models found.
@@ -206,8 +207,8 @@ def hands_on_faces(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:
         Shape (H,).
     """
     is_there = _head_apart_shoulders(hands, bodies) < _FACE_SHOULDERS
-    is_farther = hands.length_px[:, None] < _FARTHER_SHOULDERS * bodies.shoulder_px
-    return np.asarray((owner < 0) & (is_there & is_farther).any(axis=1))
+    is_nearer = hands.length_px[:, None] > _OWN_HAND_SHOULDERS[1] * bodies.shoulder_px
+    return np.asarray((owner < 0) & (is_there & ~is_nearer).any(axis=1))
 
 
 def hands_at_rest(hands: Hands, bodies: Bodies, owner: IntArray) -> BoolArray:

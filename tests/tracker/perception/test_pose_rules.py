@@ -118,10 +118,15 @@ def test_a_hand_without_owner_may_be_that_of_the_nearest_head_whose_wrist_is_los
 
 @pytest.mark.parametrize(
     ("wrist", "palm_px", "on_face"),
-    [((189, 62), 5.0, True), ((189, 62), 8.0, False), ((170, 62), 5.0, False)],
-    ids=["an ear", "in front of the face", "beside it, of somebody farther"],
+    [
+        ((189, 62), 5.0, True),
+        ((189, 75), 12.0, True),
+        ((189, 100), 30.0, False),
+        ((170, 62), 5.0, False),
+    ],
+    ids=["an ear", "a mouth", "of somebody nearer", "beside it, of somebody farther"],
 )
-def test_a_hand_on_the_face_of_somebody_nearer_is_none(
+def test_a_hand_without_owner_on_a_face_is_none_unless_it_would_hide_it(
     body, upright_hand, wrist, palm_px, on_face
 ):
     hand = upright_hand(wrist, palm_px=palm_px)
