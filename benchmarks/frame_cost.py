@@ -15,8 +15,9 @@ where numba is installed, and compared with those that are not.
   norfair, motpy, Stone Soup (2-D assignment): as their documentation sets them up
 
 norfair and motpy get positions (they know nothing else), and so does filterpy; the others get
-bearings and ranges. Stone Soup is left out where a frame would take seconds, and so is whoever is
-not installed (`pip install -e .[bench]` brings all).
+bearings and ranges. What each makes of those numbers before it tracks (`Measurements`,
+`Detection`) is timed with it. Stone Soup is left out where a frame would take seconds, and so is
+whoever is not installed (`pip install -e .[bench]` brings all).
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ import time
 import warnings
 from collections.abc import Callable
 from importlib.util import find_spec
+from typing import NamedTuple
 
 import numpy as np
 from rich.console import Console
@@ -37,7 +39,22 @@ from tracker.tracking.view import View
 PERIOD_S = 0.1
 STD_M = 0.05
 STONE_SOUP_MOST = 100
-Step = Callable[[int, np.ndarray], None]
+
+
+class Seen(NamedTuple):
+    """One frame: where everybody seems to be, in both forms, each of N rows."""
+
+    xy_m: np.ndarray
+    bearing_rad: np.ndarray
+    range_m: np.ndarray
+
+    @staticmethod
+    def at(xy_m: np.ndarray) -> Seen:
+        """Places as a sensor at the origin would give them."""
+        return Seen(xy_m, np.arctan2(xy_m[:, 1], xy_m[:, 0]), np.hypot(xy_m[:, 0], xy_m[:, 1]))
+
+
+Step = Callable[[int, Seen], None]
 
 
 def product(compiled: bool = True, **parameters: object) -> Callable[[int], Step]:
@@ -47,9 +64,9 @@ def product(compiled: bool = True, **parameters: object) -> Callable[[int], Step
         tracker = PersonTracker(Config().replace(**parameters), compiled=compiled)
         view = View(np.zeros(3), 2 * np.pi) if not parameters else None
 
-        def step(frame: int, xy: np.ndarray) -> None:
-            bearing, range_m = np.arctan2(xy[:, 1], xy[:, 0]), np.hypot(xy[:, 0], xy[:, 1])
-            measured = Measurements.polar(bearing, range_m, STD_M / range_m, STD_M)
+        def step(frame: int, seen: Seen) -> None:
+            std_rad = STD_M / seen.range_m
+            measured = Measurements.polar(seen.bearing_rad, seen.range_m, std_rad, STD_M)
             tracks = tracker.step(round(frame * PERIOD_S * 1e9), measured, view=view)
             # The gate turns one true measurement in a hundred away, which begins a track.
             assert people <= len(tracks) <= 1.2 * people + 3
@@ -72,8 +89,8 @@ def filterpy(people: int) -> Step:
         item.Q = Q_continuous_white_noise(2, PERIOD_S, 0.3, 2, order_by_dim=False)
         filters.append(item)
 
-    def step(frame: int, xy: np.ndarray) -> None:
-        for item, z in zip(filters, xy, strict=True):
+    def step(frame: int, seen: Seen) -> None:
+        for item, z in zip(filters, seen.xy_m, strict=True):
             item.predict()
             item.update(z)
 
@@ -86,8 +103,8 @@ def norfair(people: int) -> Step:
 
     tracker = Tracker(distance_function="euclidean", distance_threshold=1.0)
 
-    def step(frame: int, xy: np.ndarray) -> None:
-        tracker.update([Detection(points=point[None]) for point in xy])
+    def step(frame: int, seen: Seen) -> None:
+        tracker.update([Detection(points=point[None]) for point in seen.xy_m])
 
     return step
 
@@ -98,8 +115,8 @@ def motpy(people: int) -> Step:
 
     tracker = MultiObjectTracker(dt=PERIOD_S)
 
-    def step(frame: int, xy: np.ndarray) -> None:
-        boxes = np.concatenate([xy - 0.5, xy + 0.5], axis=1)
+    def step(frame: int, seen: Seen) -> None:
+        boxes = np.concatenate([seen.xy_m - 0.5, seen.xy_m + 0.5], axis=1)
         tracker.step([Detection(box=box) for box in boxes])
 
     return step
@@ -111,9 +128,8 @@ def stone_soup(people: int) -> Step:
 
     tracker = StoneSoup((0.02, STD_M), "gnn", min_points=2)
 
-    def step(frame: int, xy: np.ndarray) -> None:
-        bearing, range_m = np.arctan2(xy[:, 1], xy[:, 0]), np.hypot(xy[:, 0], xy[:, 1])
-        measured = Measurements.polar(bearing, range_m, 0.02, STD_M)
+    def step(frame: int, seen: Seen) -> None:
+        measured = Measurements.polar(seen.bearing_rad, seen.range_m, 0.02, STD_M)
         tracker.step(round(frame * PERIOD_S * 1e9), measured)
 
     return step
@@ -157,11 +173,11 @@ def medians_us(people: int, seconds: float, turn: int) -> dict[str, float]:
         measured = []
         for _ in range(turn):
             at = at + rng.normal(0.0, 0.01, at.shape)
-            measured.append(at + rng.normal(0.0, STD_M, at.shape))
+            measured.append(Seen.at(at + rng.normal(0.0, STD_M, at.shape)))
         for name in rng.permutation(list(steps)):
-            for number, xy in enumerate(measured):
+            for number, seen in enumerate(measured):
                 start = time.perf_counter()
-                steps[name](frame + number, xy)
+                steps[name](frame + number, seen)
                 spent[name].append(time.perf_counter() - start)
         frame += turn
     # The first frames confirm everybody; they cost something else.

@@ -16,7 +16,7 @@ from tracker.tracking.streaks import Streaks
 
 #: Rows of `People.spans`, `counts` and `flags`.
 EXISTENCE, MISSING_S = range(2)
-ID, BORN_NS, DETECTED, MISSED, DETECTIONS, RAISED_SINCE_NS, SEEN_NS, CALLED_NS, HAND = range(9)
+ID, BORN_NS, SEEN_NS, CALLED_NS, RAISED_SINCE_NS, DETECTED, MISSED, DETECTIONS, HAND = range(9)
 RAISED, CONFIRMED = range(2)
 
 
@@ -175,6 +175,8 @@ class People:
     def as_tracks(self, stamp_ns: int, selected_id: int | None) -> Tracks:
         """What the outside sees of them."""
         mean, covariance = self.belief.merged()
+        begun_ns = self.counts[BORN_NS : SEEN_NS + 1]
+        age_s, unseen_s = sealed((stamp_ns - begun_ns) / 1e9)
         return trusted(
             Tracks,
             stamp_ns=stamp_ns,
@@ -185,8 +187,8 @@ class People:
             confirmed=self.confirmed,
             raised=self.raised,
             raised_since_ns=self.raised_since_ns,
-            age_s=frozen((stamp_ns - self.born_ns) / 1e9),
-            unseen_s=frozen((stamp_ns - self.seen_ns) / 1e9),
+            age_s=age_s,
+            unseen_s=unseen_s,
             hand=self.hand,
             selected_id=selected_id,
         )
