@@ -7,19 +7,23 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray
 from tracker.perception.bodies import HEAD, HIPS, KNEES, SHOULDERS, WRISTS, Bodies, Joint
-from tracker.perception.raise_rules import MIDDLE_ROOT
+from tracker.perception.raise_rules import MIDDLE_ROOT, palm_rule
 
 #: A hand belongs to the body with a wrist so close to its own, in widths of the shoulders: the
 #: pose model errs by a sixth of a hand, and the arm may have moved since (guess).
 _OWN_WRIST_SHOULDERS = 0.6
 #: A body must be so close to vouch for a hand: doubt is enough to refuse one, but not to raise it.
-#: Nine in ten drawn callers are closer to their own hand, neighbors seldom (guess).
-VOUCHING_WRIST_SHOULDERS = 0.45
+#: Ninety-nine in a hundred hands of drawn callers that needed it were closer to the body's wrist;
+#: a forearm taken for a hand is not.
+VOUCHING_WRIST_SHOULDERS = 0.35
 #: How long an own hand may be, in widths of the shoulders: drawn callers' measure 0.3 to 0.9, more
 #: if held to the camera, and less if closed. Neighbors much nearer or farther do not fit (guess).
 _OWN_HAND_SHOULDERS = (0.18, 1.2)
 #: What is so close to the nose, eyes or ears, in widths of the shoulders, is on the face (guess).
 _FACE_SHOULDERS = 0.25
+#: A hand whose fingers rise less than this, in palms, is bent: callers' hands near their own head
+#: rise by 1.5 to 2, one around a cup by 1.3. It must be farther from the head by a factor (guess).
+_BENT_PALMS, _BENT_FARTHER = 1.5, 1.25
 #: A hand so close to a hip or a knee rests there (guess).
 _RESTING_SHOULDERS = 0.5
 
@@ -147,10 +151,27 @@ def hands_at_head(
     return answer
 
 
+def clearance_of(hands: Hands, clearance_shoulders: float) -> FloatArray:
+    """How far each hand must be from its owner's head: bent ones may hold a cup, and farther.
+
+    Args:
+        hands: What the hand models found.
+        clearance_shoulders: Of a hand that is stretched upwards.
+
+    Returns:
+        Shape (H,), in widths of the shoulders.
+    """
+    _, rise_palms = palm_rule(hands.landmarks_px, 0.0, np.pi)
+    return clearance_shoulders * np.where(rise_palms < _BENT_PALMS, _BENT_FARTHER, 1.0)
+
+
 def hands_below_shoulders(
     hands: Hands, bodies: Bodies, owner: IntArray, rise_min_shoulders: float
 ) -> BoolArray:
     """Hands that their owner holds before the body, as people do who talk.
+
+    Where somebody was found twice, or two people overlap, each body that could be the owner's has
+    a say: doubt is enough to refuse.
 
     Args:
         hands: What the hand models found.
@@ -162,14 +183,13 @@ def hands_below_shoulders(
     Returns:
         Shape (H,); False where a shoulder is not seen.
     """
-    answer = np.zeros(len(hands), dtype=bool)
-    rows = np.flatnonzero(owner >= 0)
-    owners = bodies[owner[rows]]
-    shoulders = owners.points_px[:, SHOULDERS, 1].mean(axis=1)
-    rise = (shoulders - hands.landmarks_px[rows, MIDDLE_ROOT, 1]) / owners.shoulder_px
-    seen = owners.is_visible[:, SHOULDERS].all(axis=1)
-    answer[rows] = seen & (rise < rise_min_shoulders)
-    return answer
+    apart_px = _wrists_apart_px(hands, bodies).min(axis=-1)
+    is_owner = (apart_px < VOUCHING_WRIST_SHOULDERS * bodies.shoulder_px) & _fits(hands, bodies)
+    is_owner |= owner[:, None] == np.arange(len(bodies))
+    shoulders = bodies.points_px[:, SHOULDERS, 1].mean(axis=1)
+    rise = (shoulders - hands.landmarks_px[:, None, MIDDLE_ROOT, 1]) / bodies.shoulder_px
+    seen = bodies.is_visible[:, SHOULDERS].all(axis=1)
+    return np.asarray((is_owner & seen & (rise < rise_min_shoulders)).any(axis=1))
 
 
 def owners_by_head(hands: Hands, bodies: Bodies, owner: IntArray) -> IntArray:

@@ -29,6 +29,7 @@ from tracker.perception.pose_hands import draw_hands
 from tracker.perception.pose_rules import (
     VOUCHING_WRIST_SHOULDERS,
     arms_without_hand,
+    clearance_of,
     find_owners,
     hands_at_head,
     hands_at_rest,
@@ -41,7 +42,7 @@ from tracker.perception.pose_rules import (
 #: (guess).
 _BODY_MAX_AGE_S = 1.0
 
-_AtHead: TypeAlias = Callable[[Hands, Bodies, IntArray, float], BoolArray]
+_AtHead: TypeAlias = Callable[[Hands, Bodies, IntArray, FloatArray], BoolArray]
 
 
 class SecondOpinion:
@@ -176,7 +177,8 @@ def weigh_opinions(
     """
     bodies = bodies[bodies.age_s <= _BODY_MAX_AGE_S]
     owner = find_owners(hands, bodies)
-    refused = at_head(hands, bodies, owner, config.hand_head_clearance)
+    clearance = clearance_of(hands, config.hand_head_clearance)
+    refused = at_head(hands, bodies, owner, clearance)
     refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
     refused |= hands_at_rest(hands, bodies, owner) | hands_on_faces(hands, bodies, owner)
     vouched = hands.pending & (find_owners(hands, bodies, VOUCHING_WRIST_SHOULDERS) >= 0)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -72,6 +74,20 @@ def test_a_hand_stays_at_the_head_while_nobody_knows_whose_it_is(judge, upright_
     ]
     assert all(answers)
     assert not judge(memory, CLEAR, 30)  # its owner has been seen
+
+
+@pytest.mark.parametrize(("later", "at_head"), [(10, True), (11, False)])
+def test_a_hand_at_a_head_is_not_clear_of_it_by_the_word_of_somebody_who_seems_smaller(
+    judge, body, upright_hand, later, at_head
+):
+    memory, hand = HeadMemory(), upright_hand(AT_EAR)
+    judge(memory, AT_EAR, 0)
+    small = body(right_wrist=None)
+    beside = np.array([148.5, 44.0])  # the hand is two of its shoulders away from its head
+    small = replace(small, points_px=small.points_px / 4.0 + beside)
+    answer = memory.judge(later * PERIOD_NS, hand, small, np.array([0]), CLEARANCE)
+    assert HeadMemory().judge(0, hand, small, np.array([0]), CLEARANCE).tolist() == [False]
+    assert answer.tolist() == [at_head]
 
 
 def test_a_hand_at_the_head_of_a_body_whose_wrist_is_lost_is_at_it(body, upright_hand):

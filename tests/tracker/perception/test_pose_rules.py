@@ -8,6 +8,7 @@ from tracker.containers import Hands
 from tracker.perception.bodies import Bodies
 from tracker.perception.pose_rules import (
     arms_without_hand,
+    clearance_of,
     find_owners,
     hands_at_head,
     hands_at_rest,
@@ -186,7 +187,30 @@ def test_a_hand_before_the_body_is_told_from_one_that_is_up(
     wrist = (160, knuckles_row + 10)
     hand, somebody = upright_hand(wrist, palm_px=10.0), body(right_wrist=wrist)
     assert hands_below_shoulders(hand, somebody, np.array([0]), -0.05).tolist() == [below]
-    assert hands_below_shoulders(hand, somebody, np.array([-1]), -0.05).tolist() == [False]
+    assert hands_below_shoulders(hand, body(), np.array([-1]), -0.05).tolist() == [False]
+
+
+@pytest.mark.parametrize(
+    ("wrist", "below"), [((176, 110), True), ((140, 110), False)], ids=["own", "another one's"]
+)
+def test_whoever_is_found_twice_has_a_hand_before_the_body_if_either_body_says_so(
+    body, upright_hand, wrist, below
+):
+    hand = upright_hand((176, 110))  # its fingers' roots in the row of the shoulders, or above
+    lower = body(right_wrist=(176, 90), shift_px=(0, 20))
+    twice = Bodies.concatenate(lower, body(right_wrist=wrist, shift_px=(0, -1)))
+    assert hands_below_shoulders(hand, lower, np.array([0]), 0.0).tolist() == [False]
+    assert hands_below_shoulders(hand, twice, np.array([0]), 0.0).tolist() == [below]
+
+
+@pytest.mark.parametrize(("middle_tip", "clearance"), [((100, 86), 0.5), ((100, 84), 0.4)])
+def test_a_bent_hand_must_be_farther_from_the_head_than_one_stretched_upwards(
+    upright_hand, middle_tip, clearance
+):
+    landmarks = upright_hand((100, 100), palm_px=10.0).landmarks_px.copy()
+    landmarks[0, 12] = middle_tip
+    hand = replace(upright_hand((100, 100)), landmarks_px=landmarks)
+    assert clearance_of(hand, 0.4).tolist() == [clearance]
 
 
 def test_a_hand_whose_owners_shoulders_are_hidden_is_not_refused(body, upright_hand):
