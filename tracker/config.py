@@ -249,7 +249,7 @@ class Config(BaseModel):
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
     owner_hand_px: float = _parameter(
-        64.0, "`pose_opinion: veto`: a hand shorter than this (at 1.3 m, with the default camera: "
+        96.0, "`pose_opinion: veto`: a hand shorter than this (at 0.9 m, with the default camera: "
         "nearer people may not fit into the picture), or whose forearm the lower edge cuts off, "
         "and whose owner is not found, counts as raised ...",
         unit="px", group="pose", live=True, ge=0.0, le=10000.0,

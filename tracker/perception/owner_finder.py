@@ -15,7 +15,7 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, ImageArray
-from tracker.perception.bodies import Bodies, one_row_each
+from tracker.perception.bodies import HEAD, Bodies, one_row_each
 from tracker.perception.models import ModelStore
 from tracker.perception.palm_search import Window
 from tracker.perception.pictures import continues
@@ -135,7 +135,9 @@ class OwnerFinder:
         return not is_given_up and self._is_unowned(hand)
 
     def _is_unowned(self, hand: Hands) -> bool:
-        return bool(find_owners(hand, self._known, VOUCHING_WRIST_SHOULDERS)[0] < 0)
+        # Whoever's head is not seen cannot tell whether the hand is at it.
+        known = self._known[self._known.is_visible[:, HEAD].any(axis=1)]
+        return bool(find_owners(hand, known, VOUCHING_WRIST_SHOULDERS)[0] < 0)
 
     def _asked(self, hand: Hands) -> _Question | None:
         apart_px = [np.linalg.norm(hand.wrist_px[0] - item.wrist_px) for item in self._questions]

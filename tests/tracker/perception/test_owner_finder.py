@@ -9,6 +9,7 @@ from tracker.perception import BodyDetector
 from tracker.perception.bodies import Bodies
 from tracker.perception.owner_finder import WINDOW_HANDS, OwnerFinder, window_around
 
+HEAD = ("nose", "left_eye", "right_eye", "left_ear", "right_ear")
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
 
 
@@ -81,6 +82,13 @@ def test_an_owner_is_looked_for_until_known_or_in_every_window_and_long_enough(u
 def test_whose_hand_is_only_near_is_not_taken_for_the_owner(upright_hand, body):
     neighbor = Watcher(body(**UP))
     assert looking(neighbor, upright_hand((168, 70)), 4) == [True, True, False, False]
+
+
+def test_whose_head_is_not_seen_is_not_taken_for_the_owner(upright_hand, body):
+    headless = body(**UP, **dict.fromkeys(HEAD))
+    assert looking(Watcher(headless), upright_hand((148, 70)), 3) == [True, True, False]
+    one_eyed = body(**UP, **{**dict.fromkeys(HEAD), "left_eye": (205, 55)})
+    assert looking(Watcher(one_eyed), upright_hand((148, 70)), 3) == [False, False, False]
 
 
 def test_patience_begins_when_the_owner_is_lost(upright_hand, body):

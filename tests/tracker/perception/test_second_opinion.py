@@ -91,14 +91,14 @@ def test_a_hand_waits_until_its_owner_was_looked_for_in_every_window(body, uprig
 
 def test_a_small_hand_without_an_owner_waits_longer(upright_hand):
     config = Config(unowned_patience_s=1.0)
-    hands = upright_hand((148, 70)), upright_hand((148, 170), palm_px=40.0)
+    hands = upright_hand((148, 70)), upright_hand((148, 270), palm_px=60.0)
     after = [raised_after(hand, lambda bgr, window: Bodies.none(), config) for hand in hands]
     assert after == [10, 2]
 
 
 def test_a_large_hand_waits_as_long_where_the_lower_edge_cuts_its_forearm_off(upright_hand):
     config = Config(unowned_patience_s=1.0)
-    hand = upright_hand((148, 420), palm_px=40.0)  # 76 px long
+    hand = upright_hand((148, 420), palm_px=60.0)  # 114 px long
     assert raised_after(hand, lambda bgr, window: Bodies.none(), config) == 10
 
 
