@@ -245,7 +245,7 @@ class Config(BaseModel):
     )  # fmt: skip
     hand_head_clearance: float = _parameter(
         0.45, "A hand whose fingers' roots are nearer than this to its owner's nose, eyes or ears "
-        "is not up, but at the head.",
+        "is not up, but at the head; a bent hand, which may hold a cup, within a quarter more.",
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
     owner_hand_px: float = _parameter(

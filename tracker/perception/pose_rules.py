@@ -152,7 +152,7 @@ def hands_at_head(
 
 
 def clearance_of(hands: Hands, clearance_shoulders: float) -> FloatArray:
-    """How far each hand must be from its owner's head: bent ones may hold a cup, and farther.
+    """How far each hand must be from its owner's head; a bent one may hold a cup, and needs more.
 
     Args:
         hands: What the hand models found.
