@@ -79,8 +79,7 @@ def find_owners(
     """
     if len(bodies) == 0 or len(hands) == 0:
         return np.full(len(hands), -1, dtype=np.int64)
-    apart = _wrists_apart_px(hands, bodies).min(axis=-1) / bodies.shoulder_px
-    apart = np.where(_fits(hands, bodies), apart, np.inf)
+    apart = _own_wrist_apart_shoulders(hands, bodies)
     owner = apart.argmin(axis=1)
     return np.where(apart.min(axis=1) < reach_shoulders, owner, -1)
 
@@ -98,6 +97,16 @@ def arms_without_hand(hands: Hands, bodies: Bodies) -> BoolArray:
 def _wrists_apart_px(hands: Hands, bodies: Bodies) -> FloatArray:
     """From each hand to each wrist of each body, shape (H, P, 2); infinite for those not seen."""
     return _apart_px(hands.wrist_px, bodies, WRISTS)
+
+
+def _own_wrist_apart_shoulders(hands: Hands, bodies: Bodies) -> FloatArray:
+    """From each hand to the nearer wrist of each body that it fits.
+
+    Returns:
+        Shape (H, P), in widths of the shoulders; infinite where no wrist is seen, or none fits.
+    """
+    apart = _wrists_apart_px(hands, bodies).min(axis=-1) / bodies.shoulder_px
+    return np.where(_fits(hands, bodies), apart, np.inf)
 
 
 def _head_apart_shoulders(hands: Hands, bodies: Bodies) -> FloatArray:
@@ -183,8 +192,7 @@ def hands_below_shoulders(
     Returns:
         Shape (H,); False where a shoulder is not seen.
     """
-    apart_px = _wrists_apart_px(hands, bodies).min(axis=-1)
-    is_owner = (apart_px < VOUCHING_WRIST_SHOULDERS * bodies.shoulder_px) & _fits(hands, bodies)
+    is_owner = _own_wrist_apart_shoulders(hands, bodies) < VOUCHING_WRIST_SHOULDERS
     is_owner |= owner[:, None] == np.arange(len(bodies))
     shoulders = bodies.points_px[:, SHOULDERS, 1].mean(axis=1)
     rise = (shoulders - hands.landmarks_px[:, None, MIDDLE_ROOT, 1]) / bodies.shoulder_px

@@ -14,7 +14,7 @@ from tracker.tracking.appearance import Appearance
 from tracker.tracking.modes import Belief
 from tracker.tracking.streaks import Streaks
 
-#: Rows of `People.spans`, `counts` and `flags`.
+#: Rows of `People.spans`, `counts` and `flags`; ages are taken from birth and sight, side by side.
 EXISTENCE, MISSING_S = range(2)
 ID, BORN_NS, SEEN_NS, CALLED_NS, RAISED_SINCE_NS, DETECTED, MISSED, DETECTIONS, HAND = range(9)
 RAISED, CONFIRMED = range(2)
