@@ -4,9 +4,10 @@
 
 Everybody is tracked and measured in every frame, far enough apart that no tracker has to guess.
 Contenders take turns in a new order each time, so that other work on the machine slows all alike;
-medians. With turns of one frame everybody finds the caches cold, as on a robot whose perception
-works in between; with longer turns they are warm, as in a study. The product's frames are compiled
-where numba is installed, and compared with those that are not.
+medians over the turns, of the ratios too, which compare what ran side by side. With turns of one
+frame everybody finds the caches cold, as on a robot whose perception works in between; with longer
+turns they are warm, as in a study. The product's frames are compiled where numba is installed, and
+compared with those that are not.
 
   plain       product: constant velocity, Hungarian, Gaussian ranges
   default     product: every default (stand-or-walk IMM, heavy-tailed ranges, occlusion, existence)
@@ -16,8 +17,9 @@ where numba is installed, and compared with those that are not.
 
 norfair and motpy get positions (they know nothing else), and so does filterpy; the others get
 bearings and ranges. What each makes of those numbers before it tracks (`Measurements`,
-`Detection`) is timed with it. Stone Soup is left out where a frame would take seconds, and so is
-whoever is not installed (`pip install -e .[bench]` brings all).
+`Detection`) is timed with it. Whoever has taken a quarter of the time steps back, so that the
+others get their turns. Stone Soup is left out where a frame would take seconds, and so is whoever
+is not installed (`pip install -e .[bench]` brings all).
 """
 
 from __future__ import annotations
@@ -39,6 +41,8 @@ from tracker.tracking.view import View
 PERIOD_S = 0.1
 STD_M = 0.05
 STONE_SOUP_MOST = 100
+FRAMES_LEAST, FRAMES_MOST = 8, 400
+CONFIRMING = 4
 
 
 class Seen(NamedTuple):
@@ -157,8 +161,8 @@ def places(people: int) -> np.ndarray:
     return 3.0 + 2.0 * grid[:people].astype(float)
 
 
-def medians_us(people: int, seconds: float, turn: int) -> dict[str, float]:
-    """Median microseconds of a frame of each contender; NaN where it was left out."""
+def turns_us(people: int, seconds: float, turn: int) -> dict[str, np.ndarray]:
+    """Microseconds of a frame of each contender, the median of each turn; NaN where it sat out."""
     rng = np.random.default_rng(people)
     at = places(people)
     steps = {
@@ -167,24 +171,34 @@ def medians_us(people: int, seconds: float, turn: int) -> dict[str, float]:
         if find_spec(MODULES.get(name, "tracker")) is not None
         and (name != "Stone Soup" or people <= STONE_SOUP_MOST)
     }
-    spent: dict[str, list[float]] = {name: [] for name in CONTENDERS}
+    spent_s = dict.fromkeys(CONTENDERS, 0.0)
+    turns: dict[str, list[float]] = {name: [] for name in CONTENDERS}
     begin_s, frame = time.perf_counter(), 0
-    while frame < 8 or (time.perf_counter() - begin_s < seconds and frame < 400):
+    while frame < FRAMES_LEAST or (
+        time.perf_counter() - begin_s < seconds and frame < FRAMES_MOST
+    ):
         measured = []
         for _ in range(turn):
             at = at + rng.normal(0.0, 0.01, at.shape)
             measured.append(Seen.at(at + rng.normal(0.0, STD_M, at.shape)))
-        for name in rng.permutation(list(steps)):
-            for number, seen in enumerate(measured):
-                start = time.perf_counter()
-                steps[name](frame + number, seen)
-                spent[name].append(time.perf_counter() - start)
+        for name in rng.permutation(list(CONTENDERS)):
+            times = []
+            if name in steps and (frame < FRAMES_LEAST or spent_s[name] <= seconds / 4):
+                for number, seen in enumerate(measured):
+                    start = time.perf_counter()
+                    steps[name](frame + number, seen)
+                    times.append(time.perf_counter() - start)
+            spent_s[name] += sum(times)
+            # The first frames confirm everybody; they cost something else.
+            counted = times[max(CONFIRMING - frame, 0) :]
+            turns[name].append(1e6 * float(np.median(counted)) if counted else np.nan)
         frame += turn
-    # The first frames confirm everybody; they cost something else.
-    return {
-        name: 1e6 * float(np.median(times[4:])) if times else np.nan
-        for name, times in spent.items()
-    }
+    return {name: np.array(medians) for name, medians in turns.items()}
+
+
+def told(number: float, digits: int) -> str:
+    """For a table; a dash where nothing was measured."""
+    return "-" if np.isnan(number) else f"{number:,.{digits}f}"
 
 
 def main() -> None:
@@ -200,12 +214,12 @@ def main() -> None:
     for table in (cost, ratio):
         for column in ("people", *CONTENDERS):
             table.add_column(column, justify="right")
+    warnings.filterwarnings("ignore", "All-NaN", RuntimeWarning)
     for people in words.people:
-        medians = medians_us(people, words.seconds, words.turn)
-        told = {name: "-" if np.isnan(us) else f"{us:,.0f}" for name, us in medians.items()}
-        cost.add_row(str(people), *told.values())
-        shares = [us / medians["plain"] for us in medians.values()]
-        ratio.add_row(str(people), *("-" if np.isnan(x) else f"{x:.1f}" for x in shares))
+        turns = turns_us(people, words.seconds, words.turn)
+        plain = turns["plain"]
+        cost.add_row(str(people), *(told(np.nanmedian(us), 0) for us in turns.values()))
+        ratio.add_row(str(people), *(told(np.nanmedian(us / plain), 1) for us in turns.values()))
     console = Console()
     console.print(cost)
     console.print(ratio)

@@ -68,10 +68,12 @@ def check_rows(batch: Any, count: int, layout: Layout) -> None:
 
 
 def trusted(kind: type[_Batch], **columns: Any) -> _Batch:
-    """A batch whose arrays are known to fit and to be read-only: nobody looks at them again."""
+    """A batch whose arrays are known to fit and to be read-only: nobody looks at them again.
+
+    Frozen classes with slots are filled one call after the other, so these have none.
+    """
     batch = object.__new__(kind)
-    for name, column in columns.items():
-        object.__setattr__(batch, name, column)
+    batch.__dict__.update(columns)
     return batch
 
 
@@ -92,15 +94,19 @@ def constant(value: float, shape: tuple[int, ...], dtype: np.dtype[Any] = NUMBER
     return array
 
 
-def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
-    """Write numbers into an array that has its shape already.
+def fill(**columns: tuple[NDArray[Any], ArrayLike]) -> None:
+    """Write numbers into arrays that have their shape already.
+
+    Args:
+        columns: What each is called, the array, and what comes in.
 
     Raises:
-        ShapeError: They have another shape, and are not one for all either.
+        ShapeError: Some have another shape, and are not one for all either.
     """
-    try:
-        column[...] = value
-    except ValueError as error:
-        raise ShapeError(
-            f"`{name}` has shape {np.shape(value)}; needed is {column.shape}."
-        ) from error
+    for name, (column, value) in columns.items():
+        try:
+            column[...] = value
+        except ValueError as error:
+            raise ShapeError(
+                f"`{name}` has shape {np.shape(value)}; needed is {column.shape}."
+            ) from error

@@ -45,7 +45,7 @@ class MeasurementModel(IntEnum):
     CARTESIAN = 1
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Measurements:
     """What the sensors claim about people at one instant; row i of each array is one claim.
 
@@ -129,20 +129,21 @@ class Measurements:
         bearing = np.asarray(bearing_rad, dtype=np.float64)
         count = bearing.size
         values, covariance = np.empty((count, 2)), np.zeros((count, 2, 2))
-        fill("bearing_rad", values[:, 0], bearing)
-        fill("range_m", values[:, 1], range_m)
-        fill("bearing_std_rad", covariance[:, 0, 0], bearing_std_rad)
-        fill("range_std_m", covariance[:, 1, 1], range_std_m)
+        distance, spread = values[:, 1], covariance[:, 1, 1]
+        fill(
+            bearing_rad=(values[:, 0], bearing),
+            range_m=(distance, range_m),
+            bearing_std_rad=(covariance[:, 0, 0], bearing_std_rad),
+            range_std_m=(spread, range_std_m),
+        )
         covariance *= covariance
-        np.copyto(covariance[:, 1, 1], 1.0, where=np.isnan(values[:, 1]))
-        pose = np.empty((count, 3))
-        fill("sensor_pose", pose, sensor_pose)
+        np.copyto(spread, 1.0, where=np.isnan(distance))
         measured = trusted(
             Measurements,
             values=sealed(values),
             covariance=sealed(covariance),
             model=constant(MeasurementModel.POLAR, (count,), COUNTS),
-            sensor_pose=sealed(pose),
+            sensor_pose=_poses(sensor_pose, count),
             raised=_column("raised", raised, count, FLAGS),
             person=_column("person", person, count, COUNTS),
             hand=_column("hand", hand, count, COUNTS),
@@ -180,7 +181,7 @@ class Measurements:
         xy = xy[None, :] if xy.ndim == 1 else xy
         count = len(xy)
         spread = np.empty((count, 2, 2))
-        fill("covariance", spread, covariance)
+        fill(covariance=(spread, covariance))
         return Measurements(
             values=xy,
             covariance=spread,
@@ -207,11 +208,19 @@ class Measurements:
         return Measurements(**joined, appearance=_joined_appearance(parts))
 
 
+def _poses(sensor_pose: ArrayLike, count: int) -> FloatArray:
+    if sensor_pose is _ORIGIN:
+        return constant(0.0, (count, 3))
+    poses = np.empty((count, 3))
+    fill(sensor_pose=(poses, sensor_pose))
+    return sealed(poses)
+
+
 def _column(name: str, value: ArrayLike, count: int, dtype: np.dtype[Any]) -> NDArray[Any]:
     if isinstance(value, (bool, int)):
         return constant(value, (count,), dtype)
     column = np.empty(count, dtype)
-    fill(name, column, value)
+    fill(**{name: (column, value)})
     return sealed(column)
 
 

@@ -32,7 +32,7 @@ _LAYOUT = {
 }
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Tracks:
     """Every customer at one instant; row i of each array is the same person.
 

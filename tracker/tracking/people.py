@@ -31,7 +31,7 @@ class _Row:
         return row
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class People:
     """Stacked state of all tracks; row i of each array named below is the same person.
 
@@ -113,7 +113,7 @@ class People:
     def customers(self) -> People:
         """Those with an identity, in its order."""
         ids = self.id.tolist()  # few numbers are compared faster one by one
-        if 0 not in ids and ids == sorted(ids):
+        if ids == sorted(ids) and 0 not in ids[:1]:
             return self  # nearly always, without a scan
         order = np.argsort(self.id, kind="stable")
         return self[order[np.count_nonzero(self.id == 0) :]]
@@ -163,7 +163,7 @@ class People:
             streaks = changes.pop("streaks")
             changes |= {item.name: getattr(streaks, item.name) for item in fields(streaks)}
         for name, value in changes.items():
-            place = People.__dict__[name]
+            place = vars(People).get(name)
             if not isinstance(place, _Row):
                 changed[name] = value
                 continue
@@ -175,20 +175,22 @@ class People:
     def as_tracks(self, stamp_ns: int, selected_id: int | None) -> Tracks:
         """What the outside sees of them."""
         mean, covariance = self.belief.merged()
-        begun_ns = self.counts[BORN_NS : SEEN_NS + 1]
-        age_s, unseen_s = sealed((stamp_ns - begun_ns) / 1e9)
+        counts, flags = self.counts, self.flags
+        lapse_s = (stamp_ns - counts[BORN_NS : SEEN_NS + 1]).astype(np.float64)
+        lapse_s /= 1e9
+        sealed(lapse_s)
         return trusted(
             Tracks,
             stamp_ns=stamp_ns,
-            id=self.id,
+            id=counts[ID],
             mean=frozen(mean),
             covariance=frozen(covariance),
-            existence=self.existence,
-            confirmed=self.confirmed,
-            raised=self.raised,
-            raised_since_ns=self.raised_since_ns,
-            age_s=age_s,
-            unseen_s=unseen_s,
-            hand=self.hand,
+            existence=self.spans[EXISTENCE],
+            confirmed=flags[CONFIRMED],
+            raised=flags[RAISED],
+            raised_since_ns=counts[RAISED_SINCE_NS],
+            age_s=lapse_s[0],
+            unseen_s=lapse_s[1],
+            hand=counts[HAND],
             selected_id=selected_id,
         )

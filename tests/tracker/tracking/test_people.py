@@ -40,7 +40,7 @@ def test_streaks_are_replaced_as_one(people):
 
 
 def test_a_field_that_people_do_not_have_is_refused(people):
-    with pytest.raises(KeyError, match="wisdom"):
+    with pytest.raises(TypeError, match="wisdom"):
         people.replace(wisdom=np.zeros(3))
 
 

@@ -11,7 +11,7 @@ from tracker.tracking.admission import (
     VARIANCE_MAX,
     VARIANCE_MIN,
 )
-from tracker.tracking.compiled.loop import loop
+from tracker.tracking.compiled.loop import loop, step
 
 _POLAR = int(MeasurementModel.POLAR)
 
@@ -78,7 +78,7 @@ def admit(
     return raised[:kept], others[:rest]
 
 
-@loop
+@step
 def _is_usable(
     values: FloatArray, covariance: FloatArray, model: IntArray, pose: FloatArray, row: int
 ) -> bool:
@@ -99,5 +99,7 @@ def _is_usable(
     if not first < (BEARING_VARIANCE_MAX if is_polar else VARIANCE_MAX):
         return False
     mixed, mirrored = covariance[row, 0, 1], covariance[row, 1, 0]
+    if mixed == 0.0 and mirrored == 0.0:
+        return True
     spread = np.sqrt(first) * np.sqrt(second)
     return abs(mixed) < (1.0 - 1e-9) * spread and abs(mixed - mirrored) <= 1e-9 * spread

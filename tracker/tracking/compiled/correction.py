@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import FloatArray, IntArray
-from tracker.tracking.compiled.loop import loop
+from tracker.tracking.compiled.loop import loop, step
 from tracker.tracking.compiled.pairing import (
     H00,
     H01,
@@ -102,7 +102,7 @@ def update_jointly(
         begin = end
 
 
-@loop
+@step
 def _weigh(weight: FloatArray, person: int, log_likelihood: FloatArray) -> None:
     """Bayes' rule on the modes of one track, in place: `modes.weigh_modes`."""
     modes = len(weight)
@@ -120,7 +120,7 @@ def _weigh(weight: FloatArray, person: int, log_likelihood: FloatArray) -> None:
         weight[mode, person] /= floored
 
 
-@loop
+@step
 def _correct(
     mean: FloatArray,
     covariance: FloatArray,
@@ -149,12 +149,13 @@ def _correct(
     l00 = np.sqrt(own00 + max(r00, NOISE_SHARE_MIN * own00))
     l10 = (own01 + r01) / l00
     l11 = np.sqrt(own11 + max(r11, NOISE_SHARE_MIN * own11) - l10 * l10)
-    first = numbers[pair, mode, Y0] / l00
-    second = (numbers[pair, mode, Y1] - l10 * first) / l11
+    per_l00, per_l11 = 1.0 / l00, 1.0 / l11
+    first = numbers[pair, mode, Y0] * per_l00
+    second = (numbers[pair, mode, Y1] - l10 * first) * per_l11
     for row in range(4):
         to_x, to_y = covariance[mode, person, row, 0], covariance[mode, person, row, 1]
-        root[row, 0] = (to_x * h00 + to_y * h01) / l00
-        root[row, 1] = (to_x * h10 + to_y * h11 - l10 * root[row, 0]) / l11
+        root[row, 0] = (to_x * h00 + to_y * h01) * per_l00
+        root[row, 1] = (to_x * h10 + to_y * h11 - l10 * root[row, 0]) * per_l11
     for row in range(4):
         new_mean[mode, to, row] = (
             mean[mode, person, row] + root[row, 0] * first + root[row, 1] * second

@@ -13,7 +13,7 @@ from tracker.tracking import frame
 from tracker.tracking.admission import hand_bias, is_semidefinite
 from tracker.tracking.compiled.kernel import track_frame
 from tracker.tracking.compiled.settings import settings_of
-from tracker.tracking.compiled.state import people_of, state_of
+from tracker.tracking.compiled.state import State, people_of, state_of
 from tracker.tracking.motion import motion_over
 from tracker.tracking.people import People
 from tracker.tracking.view import View
@@ -48,14 +48,14 @@ class CompiledTrack:
         if config is not self._config:
             self._config, self._settings = config, settings_of(config)
         motion = motion_over(dt_s, config)
-        state, mean, covariance, next_id = track_frame(
+        *state, mean, covariance, next_id = track_frame(
             *state_of(people),
             *_claims(measurements),
             *(motion.transition, motion.noise, motion.switching),
             *(_numbers(view), _numbers(scan_view), scan_view is not None),
             *(next_id, dt_s, stamp_ns, hand_bias(dt_s, config), self._settings),
         )
-        return people_of(state, mean, covariance), next_id
+        return people_of(State(*state), mean, covariance), next_id
 
 
 def _claims(measurements: Measurements) -> Iterator[np.ndarray]:

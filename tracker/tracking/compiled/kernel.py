@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit, types
 
@@ -86,10 +88,14 @@ def _given(kind: types.Type, dimensions: int) -> types.Array:
 
 
 _NUMBER, _WHOLE, _TRUTH = types.float64, types.int64, types.boolean
-#: Said beforehand, so that no array ever leads to another compilation by how it is laid out.
-_SIGNATURE = (
-    *(_given(_NUMBER, dimensions) for dimensions in (2, 3, 4, 2)),  # the state
+_STATE = (
+    *(_given(_NUMBER, dimensions) for dimensions in (2, 3, 4, 2)),
     *(_given(_WHOLE, 2), _given(_TRUTH, 2), _given(_TRUTH, 2)),
+)
+#: Said beforehand, so that no array ever leads to another compilation by how it is laid out, and
+#: that what comes out is read-only too.
+_SIGNATURE = types.Tuple((*_STATE, _given(_NUMBER, 2), _given(_NUMBER, 3), _WHOLE))(
+    *_STATE,
     *(_given(_NUMBER, 2), _given(_NUMBER, 3), _given(_WHOLE, 1), _given(_NUMBER, 2)),
     *(_given(_TRUTH, 1), _given(_WHOLE, 1), _given(_WHOLE, 1), _given(_NUMBER, 3)),
     _given(_TRUTH, 1),  # may_enter
@@ -129,7 +135,7 @@ def track_frame(
     stamp_ns: int,
     bias: float,
     numbers: FloatArray,
-) -> tuple[State, FloatArray, FloatArray, int]:
+) -> tuple[Any, ...]:
     """Everybody after one instant.
 
     Args:
@@ -162,8 +168,8 @@ def track_frame(
         numbers: As `settings_of` gives them.
 
     Returns:
-        The state, everybody's mean and covariance over the modes, shapes (N, 4) and (N, 4, 4), and
-        the identity of the next customer.
+        The arrays of a `State`, everybody's mean and covariance over the modes, shapes (N, 4) and
+        (N, 4, 4), all of them read-only, and the identity of the next customer.
     """
     settings, tracks = named(numbers), weight.shape[1]
     rows, rest = admit(
@@ -214,6 +220,7 @@ def track_frame(
     one_mean, one_covariance = merge_modes(state.weight, state.mean, state.covariance)
     rows, rest = _left(rows, called_by, len(values)), _left(rest, shown_by, len(values))
     distance_m = settings.same_person_distance_m
+    is_same = False
     if len(rows) or len(rest) or has_twins(one_mean, state.counts[ID], is_seen, distance_m):
         state, next_id = renew(
             state, one_mean, is_called, is_seen, rows, rest,
@@ -221,8 +228,11 @@ def track_frame(
         )  # fmt: skip
     else:
         stays = decide_who_stays(state, tracks, stamp_ns, settings)
-        if stays.all():
-            return state, one_mean, one_covariance, next_id
+        is_same = bool(stays.all())
         state = selected(state, stays)
-    one_mean, one_covariance = merge_modes(state.weight, state.mean, state.covariance)
-    return state, one_mean, one_covariance, next_id
+    if not is_same:
+        one_mean, one_covariance = merge_modes(state.weight, state.mean, state.covariance)
+    return (
+        state.weight, state.mean, state.covariance, state.spans, state.counts, state.flags,
+        state.recent, one_mean, one_covariance, next_id,
+    )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel
-from tracker.tracking.compiled.loop import loop
+from tracker.tracking.compiled.loop import loop, step
 from tracker.tracking.compiled.prediction import TURN, merge_modes, wrapped
 from tracker.tracking.compiled.settings import Settings
 from tracker.tracking.outliers import ROUNDS
@@ -96,7 +96,7 @@ def find_pairs(
             for number in range(count):
                 place = near[number]
                 first, second = _innovation(seen, decisive, claims, place, kind)
-                distance, _ = _distance(seen, decisive, claims, place, first, second, dof)
+                distance, area = _distance(seen, decisive, claims, place, first, second, dof)
                 if not distance <= limit:
                     continue
                 if pairs == len(track):
@@ -105,7 +105,11 @@ def find_pairs(
                 track[pairs], claim[pairs] = person, order[place]
                 likelihood = 0.0
                 for mode in range(modes):
-                    joint = _compare(seen, mode, claims, place, kind, dof, numbers, pairs)
+                    if modes == 2:
+                        first, second = _innovation(seen, mode, claims, place, kind)
+                        distance, area = _distance(seen, mode, claims, place, first, second, dof)
+                    joint = _log_likelihood(distance, area, kind)
+                    _note(seen, mode, claims, place, first, second, joint, dof, numbers, pairs)
                     if modes == 2:
                         joint += np.log(weight[mode, person])
                     likelihood = joint if mode == 0 else log_of_sum(likelihood, joint)
@@ -130,7 +134,8 @@ def _claims(
         kind = kinds[group]
         for place in range(bounds[group], bounds[group + 1]):
             row = rows[order[place]]
-            claims[_Z0, place], claims[_N00, place] = values[row, 0], noise[row, 0, 0]
+            first = values[row, 0] if kind == _CARTESIAN else wrapped(values[row, 0])
+            claims[_Z0, place], claims[_N00, place] = first, noise[row, 0, 0]
             if kind == _BEARING:
                 claims[_Z1, place], claims[_N01, place], claims[_N11, place] = 0.0, 0.0, 1.0
             else:
@@ -140,7 +145,7 @@ def _claims(
     return claims
 
 
-@loop
+@step
 def _near(
     seen: FloatArray,
     at: int,
@@ -160,13 +165,13 @@ def _near(
     its answers are read a word at a time, as most are no.
     """
     e0, e1, s00, s11 = seen[at, _E0], seen[at, _E1], seen[at, _S00], seen[at, _S11]
-    turn = 0.0 if kind == _CARTESIAN else TURN
+    turn = np.inf if kind == _CARTESIAN else TURN
     far = np.inf if kind == _BEARING else far
     words[:] = 0
     for number in range(end - begin):
         place = np.uint64(begin + number)  # rows counted from the end would forbid that
-        first, second = claims[_Z0, place] - e0, claims[_Z1, place] - e1
-        first -= turn * np.floor((first + np.pi) / TURN)
+        first, second = abs(claims[_Z0, place] - e0), claims[_Z1, place] - e1
+        first = min(first, turn - first)  # the way round, where that is shorter
         is_first_near = first * first <= limit * (s00 + claims[_N00, place])
         is_second_near = second * second <= far * (s11 + claims[_N11, place])
         is_near[np.uint64(number)] = is_first_near & is_second_near
@@ -180,7 +185,7 @@ def _near(
     return count
 
 
-@loop
+@step
 def log_of_sum(first: float, second: float) -> float:
     """log(exp(a) + exp(b)) without overflow."""
     most = max(first, second)
@@ -225,7 +230,7 @@ def _grouped(
     return order, bounds, kinds[:groups]
 
 
-@loop
+@step
 def _is_same_sensor(row: int, other: int, pose: FloatArray, doubt: FloatArray) -> bool:
     for i in range(3):
         if pose[row, i] != pose[other, i]:
@@ -236,7 +241,7 @@ def _is_same_sensor(row: int, other: int, pose: FloatArray, doubt: FloatArray) -
     return True
 
 
-@loop
+@step
 def _expect(
     x: float,
     y: float,
@@ -256,10 +261,11 @@ def _expect(
     e0, e1, h00, h01, h10, h11 = x, y, 1.0, 0.0, 0.0, 1.0
     if kind != _CARTESIAN:
         dx, dy = x - pose[row, 0], y - pose[row, 1]
-        range_m = max(np.hypot(dx, dy), RANGE_FLOOR_M)
-        cos, sin = dx / range_m, dy / range_m
-        e0, e1 = np.arctan2(dy, dx) - pose[row, 2], range_m
-        h00, h01, h10, h11 = -sin / range_m, cos / range_m, cos, sin
+        range_m = max(np.sqrt(dx * dx + dy * dy), RANGE_FLOOR_M)
+        per_m = 1.0 / range_m
+        cos, sin = dx * per_m, dy * per_m
+        e0, e1 = wrapped(np.arctan2(dy, dx) - pose[row, 2]), range_m
+        h00, h01, h10, h11 = -sin * per_m, cos * per_m, cos, sin
         if kind == _BEARING:
             e1 = h10 = h11 = 0.0
         d00, d01, d11 = pose_doubt(h00, h01, h10, h11, doubt, row)
@@ -276,7 +282,7 @@ def _expect(
     seen[at, _S11] = max(own11, floor_m**2 * (h10 * h10 + h11 * h11)) + d11
 
 
-@loop
+@step
 def pose_doubt(
     h00: float, h01: float, h10: float, h11: float, doubt: FloatArray, row: int
 ) -> tuple[float, float, float]:
@@ -293,7 +299,7 @@ def pose_doubt(
     return h00 * a0 + h01 * a1 + a2, h00 * b0 + h01 * b1 + b2, h10 * b0 + h11 * b1
 
 
-@loop
+@step
 def _innovation(
     seen: FloatArray, at: int, claims: FloatArray, place: int, kind: int
 ) -> tuple[float, float]:
@@ -301,7 +307,7 @@ def _innovation(
     return first if kind == _CARTESIAN else wrapped(first), second
 
 
-@loop
+@step
 def _distance(
     seen: FloatArray,
     at: int,
@@ -321,35 +327,38 @@ def _distance(
     return first * first / s00 + square, s00 * s_rest
 
 
-@loop
-def _compare(
+@step
+def _log_likelihood(distance: float, area: float, kind: int) -> float:
+    freedom = 1.0 if kind == _BEARING else 2.0
+    return -0.5 * (distance + np.log(area) + freedom * _LOG_TURN)
+
+
+@step
+def _note(
     seen: FloatArray,
     at: int,
     claims: FloatArray,
     place: int,
-    kind: int,
+    first: float,
+    second: float,
+    log_likelihood: float,
     dof: float,
     numbers: FloatArray,
     pair: int,
-) -> float:
-    """Write the numbers of a pair in a mode of motion; gives the log-likelihood."""
-    first, second = _innovation(seen, at, claims, place, kind)
-    distance, area = _distance(seen, at, claims, place, first, second, dof)
-    freedom = 1.0 if kind == _BEARING else 2.0
+) -> None:
+    """Write down the numbers of a pair in a mode of motion."""
     r00, r01 = claims[_N00, place] + seen[at, _D00], claims[_N01, place] + seen[at, _D01]
     r11 = claims[_N11, place] + seen[at, _D11]
     if dof > 0.0:
         r11 = _outlier_variance(seen, at, first, second, r00, r01, r11, dof)
-    log_likelihood = -0.5 * (distance + np.log(area) + freedom * _LOG_TURN)
     numbers[pair, at, Y0], numbers[pair, at, Y1] = first, second
     numbers[pair, at, H00], numbers[pair, at, H01] = seen[at, _J00], seen[at, _J01]
     numbers[pair, at, H10], numbers[pair, at, H11] = seen[at, _J10], seen[at, _J11]
     numbers[pair, at, R00], numbers[pair, at, R01], numbers[pair, at, R11] = r00, r01, r11
     numbers[pair, at, LOG_LIKELIHOOD] = log_likelihood
-    return log_likelihood
 
 
-@loop
+@step
 def _outlier_variance(
     seen: FloatArray,
     at: int,
@@ -374,7 +383,7 @@ def _outlier_variance(
     return r11 + r * (1.0 / weight - 1.0)
 
 
-@loop
+@step
 def _newcomer_density(kind: int, range_m: float, settings: Settings) -> float:
     if kind == _CARTESIAN:
         return settings.newcomer_density

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import FloatArray
-from tracker.tracking.compiled.loop import loop
+from tracker.tracking.compiled.loop import loop, step
 from tracker.tracking.view import ARM_M, DEPTH_MIN_M, HALF_BODY_M, OCCLUDED
 
 TURN = 2.0 * np.pi
 
 
-@loop
+@step
 def wrapped(angle_rad: float) -> float:
     """The same direction in [-pi, pi)."""
     return angle_rad - TURN * np.floor((angle_rad + np.pi) / TURN)
@@ -36,7 +36,6 @@ def predict(
     """
     modes, people = weight.shape
     for to in range(modes):
-        reach, rest = transition[to, 0, 2], transition[to, 2, 2]
         for person in range(people):
             if modes == 2:
                 first = switching[0, to] * weight[0, person]
@@ -47,19 +46,13 @@ def predict(
                     first / total, second / total, mean, covariance, person,
                     means[to], covariances[to],
                 )  # fmt: skip
+                _carry(means, covariances, to, person, transition, noise, means, covariances)
             else:
                 weights[to, person] = weight[to, person]
-                for row in range(4):
-                    means[to, person, row] = mean[to, person, row]
-                    for column in range(4):
-                        covariances[to, person, row, column] = covariance[to, person, row, column]
-            _carry(means, covariances, to, person, reach, rest)
-            for row in range(4):
-                for column in range(4):
-                    covariances[to, person, row, column] += noise[to, row, column]
+                _carry(mean, covariance, to, person, transition, noise, means, covariances)
 
 
-@loop
+@step
 def mix(
     first: float,
     second: float,
@@ -92,24 +85,32 @@ def mix(
             )
 
 
-@loop
+@step
 def _carry(
-    mean: FloatArray, covariance: FloatArray, mode: int, person: int, reach: float, rest: float
+    mean: FloatArray,
+    covariance: FloatArray,
+    mode: int,
+    person: int,
+    transition: FloatArray,
+    noise: FloatArray,
+    new_mean: FloatArray,
+    new: FloatArray,
 ) -> None:
-    """F x and F P F' of one track, in place."""
-    for axis in range(2):
-        mean[mode, person, axis] += reach * mean[mode, person, axis + 2]
-        mean[mode, person, axis + 2] *= rest
-    for axis in range(2):
-        for column in range(4):
-            speed = covariance[mode, person, axis + 2, column]
-            covariance[mode, person, axis, column] += reach * speed
-            covariance[mode, person, axis + 2, column] = rest * speed
-    for row in range(4):
-        for axis in range(2):
-            speed = covariance[mode, person, row, axis + 2]
-            covariance[mode, person, row, axis] += reach * speed
-            covariance[mode, person, row, axis + 2] = rest * speed
+    """F x and F P F' + Q of one track; what is new may take the place of what was."""
+    reach, rest = transition[mode, 0, 2], transition[mode, 2, 2]
+    for i in range(2):
+        speed = mean[mode, person, i + 2]
+        new_mean[mode, person, i] = mean[mode, person, i] + reach * speed
+        new_mean[mode, person, i + 2] = rest * speed
+        for j in range(2):
+            to, at = i + 2, j + 2
+            place, speed = covariance[mode, person, i, j], covariance[mode, person, to, at]
+            right, below = covariance[mode, person, i, at], covariance[mode, person, to, j]
+            place += reach * (right + below + reach * speed)
+            new[mode, person, i, j] = place + noise[mode, i, j]
+            new[mode, person, i, at] = rest * (right + reach * speed) + noise[mode, i, at]
+            new[mode, person, to, j] = rest * (below + reach * speed) + noise[mode, to, j]
+            new[mode, person, to, at] = rest * rest * speed + noise[mode, to, at]
 
 
 @loop

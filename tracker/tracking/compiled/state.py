@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray
-from tracker.containers.arrays import sealed
+from tracker.containers.arrays import trusted
 from tracker.tracking.appearance import Appearance
 from tracker.tracking.compiled.loop import loop
 from tracker.tracking.modes import Belief
@@ -54,18 +54,18 @@ def people_of(state: State, mean: FloatArray, covariance: FloatArray) -> People:
     """The way back; the clothes are unknown.
 
     Args:
-        state: Of N people.
+        state: Of N people, all read-only.
         mean: Shape (N, 4): over the modes.
         covariance: Shape (N, 4, 4).
     """
-    one = sealed(mean), sealed(covariance)
-    return People(
-        Belief(state.weight, state.mean, state.covariance, one),
-        state.spans,
-        state.counts,
-        state.flags,
-        state.recent,
-        Appearance.unknown(len(mean)),
+    return trusted(
+        People,
+        belief=Belief(state.weight, state.mean, state.covariance, (mean, covariance)),
+        spans=state.spans,
+        counts=state.counts,
+        flags=state.flags,
+        recent=state.recent,
+        appearance=Appearance.unknown(len(mean)),
     )
 
 
