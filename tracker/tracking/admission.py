@@ -16,6 +16,8 @@ ABSURD_M = 1e6
 VARIANCE_MIN, VARIANCE_MAX = 1e-12, 1e9
 #: A bearing with a wider variance than a full turn's says nothing.
 BEARING_VARIANCE_MAX = (2.0 * np.pi) ** 2
+#: A hand that is up may be so far from where its owner is expected (guess).
+CALLER_REACH_M = 0.7
 #: Frames closer together than this are as one where errors are alike.
 _INTERVAL_MIN_S = 0.01
 
@@ -62,8 +64,16 @@ def _is_plain(measurements: Measurements) -> bool:
     )
 
 
-def once_per_person(raised: Measurements, config: Config) -> Measurements:
-    """Two raised hands of one person count once: the first row of each person stays."""
+def once_per_person(raised: Measurements, callers_m: FloatArray, config: Config) -> Measurements:
+    """Two raised hands of one person count once: the first row of each person stays.
+
+    Hands close together are one person's, but as many of them count as customers call there.
+
+    Args:
+        raised: Raised hands.
+        callers_m: Shape (C, 2): where customers are expected whose hands were up.
+        config: `unknown_range_m`, `same_person_distance_m`.
+    """
     if len(raised) < 2:
         return raised
     if raised.person.max() >= 0:
@@ -76,8 +86,9 @@ def once_per_person(raised: Measurements, config: Config) -> Measurements:
     if np.count_nonzero(close) <= len(raised):  # everybody is close to themselves alone
         return raised
     keep = np.ones(len(raised), dtype=bool)
+    callers = is_close(xy, callers_m, CALLER_REACH_M).sum(axis=1)
     for row in np.flatnonzero(np.tril(close, -1).any(axis=1)):
-        keep[row] = not (close[row, :row] & keep[:row]).any()
+        keep[row] = np.count_nonzero(close[row, :row] & keep[:row]) < max(1, callers[row])
     return raised[keep]
 
 

@@ -74,8 +74,8 @@ def observe(
         watch: Told of both rounds of association, raised hands first.
     """
     tell = None if watch is None else _teller(watch, stamp_ns, people, config)
-    raised, others = _admit(measurements, dt_s, config)
     people, in_camera, in_view = _predict(people, dt_s, config, view, scan_view)
+    raised, others = _admit(measurements, people, dt_s, config)
     hand_chance = np.where(people.streaks.missed == 0, 1.0, RAISES_AGAIN)
     belief, existence, called_by = _update(
         people.belief,
@@ -116,7 +116,7 @@ def observe(
 
 
 def _admit(
-    measurements: Measurements, dt_s: float, config: Config
+    measurements: Measurements, people: People, dt_s: float, config: Config
 ) -> tuple[Measurements, Measurements]:
     """Raised hands, one per person, and everything else."""
     sane = usable(measurements)
@@ -130,7 +130,9 @@ def _admit(
     raised, others = measurements, NO_MEASUREMENTS
     if not measurements.raised.all():
         raised, others = measurements[measurements.raised], measurements[~measurements.raised]
-    return with_hand_bias(once_per_person(raised, config), dt_s, config), others
+    callers_m = people.belief.merged()[0][people.raised, :2]
+    raised = once_per_person(raised, callers_m, config)
+    return with_hand_bias(raised, dt_s, config), others
 
 
 def _predict(

@@ -158,6 +158,17 @@ def test_crossing_people_keep_their_identities():
     assert tracks.mean[:, 3] == pytest.approx([0.5, -0.5], abs=0.25)
 
 
+@pytest.mark.parametrize("compiled", [True, False])
+def test_callers_who_pass_within_a_hand_s_reach_are_both_heard_all_the_time(compiled):
+    tracker = PersonTracker(compiled=compiled)
+    for number in range(60):
+        y = -1.5 + 0.05 * number
+        tracks = tracker.step(number * PERIOD_NS, raised_at((2.0, y), (2.25, -y)))
+        assert (tracks.unseen_s == 0.0).all()
+    assert tracks.id.tolist() == [1, 2]
+    assert tracks.raised.all()
+
+
 def test_bearings_alone_raise_a_hand_too():
     tracker = PersonTracker()
     tracks = run(tracker, [Measurements.polar(0.2, np.nan, 0.05, 0.1)] * 3)

@@ -8,6 +8,7 @@ from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel
 from tracker.tracking.admission import (
     ABSURD_M,
     BEARING_VARIANCE_MAX,
+    CALLER_REACH_M,
     VARIANCE_MAX,
     VARIANCE_MIN,
 )
@@ -25,6 +26,8 @@ def admit(
     is_raised: BoolArray,
     person: IntArray,
     may_enter: BoolArray,
+    place: FloatArray,
+    calls: BoolArray,
     unknown_range_m: float,
     same_person_distance_m: float,
 ) -> tuple[IntArray, IntArray]:
@@ -38,8 +41,10 @@ def admit(
         is_raised: Shape (M,).
         person: Shape (M,).
         may_enter: Shape (M,): false where the doubt about the sensor's pose is no covariance.
+        place: Shape (N, 4): where people are expected.
+        calls: Shape (N,): their hands were up.
         unknown_range_m: Supposed range of a bearing alone.
-        same_person_distance_m: Two hands closer together are one person's.
+        same_person_distance_m: Two hands closer together are one person's, unless two call there.
     """
     count = len(values)
     raised, others = np.empty(count, np.int64), np.empty(count, np.int64)
@@ -72,10 +77,21 @@ def admit(
         for earlier in range(kept):
             across, along = x - x_m[earlier], y - y_m[earlier]
             near += across * across + along * along < same_person_distance_m**2
-        if near == 0:
+        if near == 0 or near < _callers(x, y, place, calls):
             raised[kept], x_m[kept], y_m[kept] = row, x, y
             kept += 1
     return raised[:kept], others[:rest]
+
+
+@loop
+def _callers(x: float, y: float, place: FloatArray, calls: BoolArray) -> int:
+    """How many call who are expected there."""
+    count = 0
+    for person in range(len(calls)):
+        across, along = x - place[person, 0], y - place[person, 1]
+        is_there = across * across + along * along < CALLER_REACH_M**2
+        count += calls[person] and is_there
+    return count
 
 
 @step

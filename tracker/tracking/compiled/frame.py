@@ -61,7 +61,7 @@ class CompiledTrack:
 def _claims(measurements: Measurements) -> Iterator[np.ndarray]:
     doubt = measurements.sensor_pose_covariance
     may_enter = constant(True, doubt.shape[:1], FLAGS)
-    if np.count_nonzero(doubt):
+    if doubt is not constant(0.0, doubt.shape) and np.count_nonzero(doubt):
         may_enter = is_semidefinite(doubt)
     return map(
         np.ascontiguousarray,

@@ -26,7 +26,7 @@ from tracker.tracking.compiled.settings import Settings, named
 from tracker.tracking.compiled.sources import named_after_sources
 from tracker.tracking.compiled.state import State, selected
 from tracker.tracking.observation import DETECTION_MIN, RAISES_AGAIN
-from tracker.tracking.people import EXISTENCE, HAND, ID, MISSED, MISSING_S
+from tracker.tracking.people import EXISTENCE, HAND, ID, MISSED, MISSING_S, RAISED
 
 
 @loop
@@ -172,10 +172,6 @@ def track_frame(
         (N, 4, 4), all of them read-only, and the identity of the next customer.
     """
     settings, tracks = named(numbers), weight.shape[1]
-    rows, rest = admit(
-        values, noise, model, pose, raised, person, may_enter,
-        settings.unknown_range_m, settings.same_person_distance_m,
-    )  # fmt: skip
     state = State(
         np.empty_like(weight), np.empty_like(mean), np.empty_like(covariance),
         spans.copy(), counts.copy(), flags.copy(), recent.copy(),
@@ -185,6 +181,10 @@ def track_frame(
         state.weight, state.mean, state.covariance,
     )  # fmt: skip
     one_mean, _ = merge_modes(state.weight, state.mean, state.covariance)
+    rows, rest = admit(
+        values, noise, model, pose, raised, person, may_enter, one_mean, state.flags[RAISED],
+        settings.unknown_range_m, settings.same_person_distance_m,
+    )  # fmt: skip
     in_camera = visibility(one_mean, view)
     in_view = in_camera
     if has_scan:
