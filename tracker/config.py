@@ -416,9 +416,15 @@ class Config(BaseModel):
         group="tracking", live=True, ge=0.0, le=10.0,
     )  # fmt: skip
     newcomer_density: float = _parameter(
-        0.005, "Measurements of nobody known, false ones and new customers', per frame and area.",
+        0.005, "Raised hands of nobody known, false ones and new customers', per frame and area.",
         unit="1/m^2", group="tracking", live=True, gt=0.0, le=10.0,
         search=Search("clutter", 0.0005, 0.2, log=True),
+    )  # fmt: skip
+    bystander_density: float = _parameter(
+        0.05, "Other measurements of nobody known, per frame and area: of who steps out from "
+        "behind others, and of what looks like a person in the scan.",
+        unit="1/m^2", group="tracking", live=True, gt=0.0, le=10.0,
+        search=Search("clutter", 0.0005, 1.0, log=True),
     )  # fmt: skip
     confirmation: Literal["m_of_n", "existence"] = _parameter(
         "m_of_n", "What makes a customer: m_of_n (raised-hand detections in a window of frames) "

@@ -24,6 +24,7 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import FloatArray, IntArray
 from tracker.evaluation.tracker_steps import Step, run_steps
+from tracker.tracking.gating import density_of_nobody
 from tracker.tracking.innovations import Round, log_densities
 from tracker.tracking.view import View
 
@@ -46,7 +47,7 @@ class PredictiveScore:
         count = len(round_.claims)
         if count == 0:
             return
-        pairs, density = round_.pairs, round_.config.newcomer_density
+        pairs, density = round_.pairs, density_of_nobody(round_.claims, round_.config)
         expected = round_.existence * round_.chance
         share = np.exp(log_densities(round_, pairs) - pairs.log_newcomer) * expected[pairs.track]
         foretold = np.bincount(pairs.claim, share, count)  # in units of the newcomers' density

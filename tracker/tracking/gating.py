@@ -89,11 +89,19 @@ def find_pairs(belief: Belief, claims: Measurements, config: Config) -> Pairs:
 
     Args:
         belief: N tracks, predicted.
-        claims: M usable measurements.
-        config: `gate_probability`, `innovation_floor_m`, `outlier_dof`, `newcomer_density`.
+        claims: M usable measurements, of raised hands alone or of everything else.
+        config: `gate_probability`, `innovation_floor_m`, `outlier_dof`, and the densities of
+            what is nobody's.
     """
-    parts = [_pairs_of_group(belief, group, config) for group in group_claims(claims)]
+    density = density_of_nobody(claims, config)
+    parts = [_pairs_of_group(belief, group, density, config) for group in group_claims(claims)]
     return Pairs.join(parts, len(belief.weight))
+
+
+def density_of_nobody(claims: Measurements, config: Config) -> float:
+    """How many such measurements of nobody known a frame has, per square meter."""
+    is_hand = len(claims) > 0 and claims.raised[0]
+    return config.newcomer_density if is_hand else config.bystander_density
 
 
 def gate_limit(ranged: bool, gate_probability: float) -> float:
@@ -164,7 +172,7 @@ def _expect(
     return _Expected(values, jacobian, doubt, own, spread)
 
 
-def _pairs_of_group(belief: Belief, group: ClaimGroup, config: Config) -> Pairs:
+def _pairs_of_group(belief: Belief, group: ClaimGroup, density: float, config: Config) -> Pairs:
     expected = _expect(belief.mean, belief.covariance, group, config)
     dof = config.outlier_dof if group.polar and group.ranged else 0.0
     limit = gate_limit(group.ranged, config.gate_probability)
@@ -198,20 +206,19 @@ def _pairs_of_group(belief: Belief, group: ClaimGroup, config: Config) -> Pairs:
         expected.jacobian.take(track, axis=1),
         noise,
         -0.5 * (distance + np.log(area) + freedom * _LOG_TURN),
-        np.log(newcomer_density(group, values, config)),
+        np.log(density * area_of(group, values, config)),
     )
 
 
-def newcomer_density(group: ClaimGroup, values: FloatArray, config: Config) -> FloatArray:
-    """Density of measurements from nobody known, in the measurements' own numbers, shape (P,).
+def area_of(group: ClaimGroup, values: FloatArray, config: Config) -> FloatArray:
+    """What a unit of the measurements' own numbers covers in square meters, shape (P,).
 
-    Evenly spread over the area, that is lambda for a point, lambda r for a bearing and a range,
-    and lambda r_max^2 / 2 for a bearing alone.
+    That is 1 for a point, r for a bearing and a range, and r_max^2 / 2 for a bearing alone: a
+    density that is even over the area is so many times as large in the measurements' numbers.
     """
     if group.polar and group.ranged:
-        return np.asarray(config.newcomer_density * np.maximum(values[:, 1], 0.1))
-    area = config.person_range_max_m**2 / 2.0 if group.polar else 1.0
-    return np.full(len(values), config.newcomer_density * area)
+        return np.maximum(values[:, 1], 0.1)
+    return np.full(len(values), config.person_range_max_m**2 / 2.0 if group.polar else 1.0)
 
 
 def _pair_up(

@@ -32,8 +32,10 @@ def follow(trials, config, *, compiled):
 
 
 def test_it_follows_people_as_the_tracker_itself_does():
-    config = default_config(CROWDED).replace(
+    config = default_config(CROWDED)
+    config = config.replace(
         motion="cv", association="hungarian", outlier_dof=0.0,
+        bystander_density=config.newcomer_density,  # of the lowered hands below
         confirm_detections=1, mature_detections=1,
         delete_after_s=60.0, forget_after_s=600.0, same_person_distance_m=0.0,
     )  # fmt: skip

@@ -106,6 +106,16 @@ def test_who_is_hardly_ever_detected_leaves_the_measurement_to_a_newcomer():
         assert assign(pairs, odds, 1).tolist() == expected
 
 
+def test_what_the_scan_shows_is_sooner_a_bystander_than_a_hand_is_a_newcomer_s():
+    belief = belief_at(np.zeros((1, 2)), 4.0 * np.eye(4))
+    config = CONFIG.replace(newcomer_density=0.005, bystander_density=0.05)
+    odds = [
+        odds_of(belief, Measurements.cartesian([[1, 1]], np.eye(2), raised=raised), 0.8, config)[1]
+        for raised in (True, False)
+    ]
+    assert odds[0] - odds[1] == pytest.approx(np.log(10.0))
+
+
 def test_no_tracks_or_no_measurements_are_no_trouble():
     measured = Measurements.cartesian([[0.0, 0.0]], np.eye(2))
     pairs, odds = odds_of(belief_at(np.zeros((0, 2)), np.eye(4)), measured)

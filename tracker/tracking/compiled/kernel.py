@@ -39,6 +39,7 @@ def _update(
     pose: FloatArray,
     doubt: FloatArray,
     visible: FloatArray,
+    density: float,
     settings: Settings,
 ) -> IntArray:
     """Associate and correct, in place; gives the row of each track's measurement, or -1."""
@@ -48,7 +49,7 @@ def _update(
     if tracks == 0 or claims == 0:
         return got
     track, claim, numbers, odds = find_pairs(
-        weight, mean, covariance, rows, values, noise, model, pose, doubt, settings
+        weight, mean, covariance, rows, values, noise, model, pose, doubt, density, settings
     )
     chance = np.empty(tracks)
     for person in range(tracks):
@@ -202,8 +203,14 @@ def track_frame(
         for row in rows:
             if np.isnan(values[row, 1]):
                 biased[row, 0, 0] = min(noise[row, 0, 0] * bias, BEARING_VARIANCE_MAX)
-    called_by = _update(state, rows, values, biased, model, pose, doubt, hand_chance, settings)
-    shown_by = _update(state, rest, values, biased, model, pose, doubt, in_view, settings)
+    called_by = _update(
+        state, rows, values, biased, model, pose, doubt,
+        hand_chance, settings.newcomer_density, settings,
+    )  # fmt: skip
+    shown_by = _update(
+        state, rest, values, biased, model, pose, doubt,
+        in_view, settings.bystander_density, settings,
+    )  # fmt: skip
 
     is_called, is_seen = called_by >= 0, (called_by >= 0) | (shown_by >= 0)
     for track in range(tracks):

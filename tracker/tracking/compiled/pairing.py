@@ -36,6 +36,7 @@ def find_pairs(
     model: IntArray,
     pose: FloatArray,
     doubt: FloatArray,
+    density: float,
     settings: Settings,
 ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
     """Pairs inside the gate, by track, then by claim: `gating.find_pairs`.
@@ -50,6 +51,7 @@ def find_pairs(
         model: Shape (M,).
         pose: Shape (M, 3).
         doubt: Shape (M, 3, 3).
+        density: Of such measurements of nobody known, per square meter.
         settings: Of the tracker.
 
     Returns:
@@ -58,7 +60,7 @@ def find_pairs(
     """
     modes, tracks = weight.shape
     order, bounds, kinds = _grouped(rows, values, model, pose, doubt)
-    claims = _claims(rows, order, bounds, kinds, values, noise, settings)
+    claims = _claims(rows, order, bounds, kinds, values, noise, density, settings)
     one_mean, one_covariance = merge_modes(weight, mean, covariance)
     room = 2 * (tracks + len(rows))
     track, claim = np.empty(room, np.int64), np.empty(room, np.int64)
@@ -126,6 +128,7 @@ def _claims(
     kinds: IntArray,
     values: FloatArray,
     noise: FloatArray,
+    density: float,
     settings: Settings,
 ) -> FloatArray:
     """What is needed of each claim, shape (6, C), in the order of the groups."""
@@ -141,7 +144,8 @@ def _claims(
             else:
                 claims[_Z1, place] = values[row, 1]
                 claims[_N01, place], claims[_N11, place] = noise[row, 0, 1], noise[row, 1, 1]
-            claims[_NEWCOMER, place] = np.log(_newcomer_density(kind, values[row, 1], settings))
+            area_m2 = _area(kind, values[row, 1], settings)
+            claims[_NEWCOMER, place] = np.log(density * area_m2)
     return claims
 
 
@@ -384,9 +388,10 @@ def _outlier_variance(
 
 
 @step
-def _newcomer_density(kind: int, range_m: float, settings: Settings) -> float:
+def _area(kind: int, range_m: float, settings: Settings) -> float:
+    """What a unit of the claim's own numbers covers: `gating.area_of`."""
     if kind == _CARTESIAN:
-        return settings.newcomer_density
+        return 1.0
     if kind == _BEARING:
-        return settings.newcomer_density * settings.person_range_max_m**2 / 2.0
-    return settings.newcomer_density * max(range_m, 0.1)
+        return settings.person_range_max_m**2 / 2.0
+    return max(range_m, 0.1)

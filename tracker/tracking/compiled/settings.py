@@ -23,6 +23,7 @@ class Settings(NamedTuple):
     same_person_distance_m: float
     detection_probability: float
     newcomer_density: float
+    bystander_density: float
     person_range_max_m: float
     bearing_limit: float
     ranged_limit: float
@@ -54,6 +55,7 @@ def settings_of(config: Config) -> FloatArray:
             same_person_distance_m=config.same_person_distance_m,
             detection_probability=config.detection_probability,
             newcomer_density=config.newcomer_density,
+            bystander_density=config.bystander_density,
             person_range_max_m=config.person_range_max_m,
             bearing_limit=gate_limit(False, config.gate_probability),
             ranged_limit=gate_limit(True, config.gate_probability),
@@ -83,4 +85,5 @@ def named(numbers: FloatArray) -> Settings:
         numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6],
         numbers[7], numbers[8], numbers[9], numbers[10], numbers[11], numbers[12], numbers[13],
         numbers[14], numbers[15], numbers[16], numbers[17], numbers[18], numbers[19], numbers[20],
+        numbers[21],
     )  # fmt: skip
