@@ -461,7 +461,8 @@ class Config(BaseModel):
         unit="s", group="tracking", live=True, gt=0.0, le=86400.0,
     )  # fmt: skip
     same_person_distance_m: float = _parameter(
-        0.45, "Two raised hands closer together than this belong to one person.",
+        0.45, "Two raised hands closer together than this belong to one person, unless several "
+        "customers call there.",
         unit="m", group="tracking", live=True, ge=0.0, le=2.0,
         search=Search("life", 0.2, 1.0),
     )  # fmt: skip
