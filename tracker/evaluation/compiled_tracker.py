@@ -12,10 +12,12 @@ from numba import njit
 
 from tracker.containers import BoolArray, FloatArray
 from tracker.tracking.compiled.association import assign
+from tracker.tracking.compiled.loop import step
 from tracker.tracking.compiled.sources import named_after_sources
 from tracker.tracking.sensor_model import RANGE_FLOOR_M
 
 _TURN = 2.0 * np.pi
+_TURNS_PER_RAD = 1.0 / _TURN
 
 
 @njit(cache=True, error_model="numpy")
@@ -72,7 +74,7 @@ def track_frame(
             w00, w_rest = 1.0 / s00, 1.0 / s_rest
             for row in range(measured):
                 turned = bearing_rad[row, trial] - bearing
-                turned -= _TURN * np.floor(turned / _TURN + 0.5)
+                turned -= _TURN * np.floor(turned * _TURNS_PER_RAD + 0.5)
                 farther = range_m[row, trial] - distance
                 rest = farther - share * turned
                 square = turned * turned * w00 + rest * rest * w_rest
@@ -97,7 +99,7 @@ def track_frame(
                 )
 
 
-@njit(error_model="numpy")
+@step
 def _predict(mean: FloatArray, covariance: FloatArray, dt_s: float, density: float) -> None:
     for axis in range(2):
         mean[axis] += dt_s * mean[axis + 2]
@@ -114,12 +116,13 @@ def _predict(mean: FloatArray, covariance: FloatArray, dt_s: float, density: flo
         covariance[axis + 2, axis + 2] += density * dt_s
 
 
-@njit(error_model="numpy")
+@step
 def _expect(mean: FloatArray, covariance: FloatArray, expected: FloatArray) -> None:
     x, y = mean[0], mean[1]
     distance = max(np.sqrt(x * x + y * y), RANGE_FLOOR_M)
-    cos, sin = x / distance, y / distance
-    turn_x, turn_y = -sin / distance, cos / distance
+    per_m = 1.0 / distance
+    cos, sin = x * per_m, y * per_m
+    turn_x, turn_y = -sin * per_m, cos * per_m
     p00, p01, p11 = covariance[0, 0], covariance[0, 1], covariance[1, 1]
     by_bearing0, by_bearing1 = p00 * turn_x + p01 * turn_y, p01 * turn_x + p11 * turn_y
     by_range0, by_range1 = p00 * cos + p01 * sin, p01 * cos + p11 * sin
@@ -130,7 +133,7 @@ def _expect(mean: FloatArray, covariance: FloatArray, expected: FloatArray) -> N
     expected[8] = cos * by_range0 + sin * by_range1
 
 
-@njit(error_model="numpy")
+@step
 def _correct(
     mean: FloatArray,
     covariance: FloatArray,
@@ -142,15 +145,15 @@ def _correct(
     root: FloatArray,
 ) -> None:
     _, _, cos, sin, turn_x, turn_y, own00, own01, own11 = expected
-    l00 = np.sqrt(own00 + bearing_variance)
-    l10 = own01 / l00
-    l11 = np.sqrt(own11 + range_variance - l10 * l10)
-    y0 = first / l00
-    y1 = (second - l10 * y0) / l11
+    per_l00 = 1.0 / np.sqrt(own00 + bearing_variance)
+    l10 = own01 * per_l00
+    per_l11 = 1.0 / np.sqrt(own11 + range_variance - l10 * l10)
+    y0 = first * per_l00
+    y1 = (second - l10 * y0) * per_l11
     for row in range(4):
         to_x, to_y = covariance[row, 0], covariance[row, 1]
-        root[row, 0] = (to_x * turn_x + to_y * turn_y) / l00
-        root[row, 1] = (to_x * cos + to_y * sin - l10 * root[row, 0]) / l11
+        root[row, 0] = (to_x * turn_x + to_y * turn_y) * per_l00
+        root[row, 1] = (to_x * cos + to_y * sin - l10 * root[row, 0]) * per_l11
         mean[row] += root[row, 0] * y0 + root[row, 1] * y1
     for row in range(4):
         for column in range(4):

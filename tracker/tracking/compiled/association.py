@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray
-from tracker.tracking.compiled.loop import loop
+from tracker.tracking.compiled.loop import loop, step
 from tracker.tracking.joint_probability import CHANGE_MIN, LOG_ODDS_MAX, SWEEPS_MAX
 
 
@@ -96,7 +96,7 @@ def _clusters(
     return parent
 
 
-@loop
+@step
 def assign(gain: FloatArray, row_of: IntArray, is_taken: BoolArray) -> None:
     """Row of the measurement of each person, or -1: at the highest sum of gains."""
     row_of[:], is_taken[:] = -1, False
