@@ -94,19 +94,15 @@ def constant(value: float, shape: tuple[int, ...], dtype: np.dtype[Any] = NUMBER
     return array
 
 
-def fill(**columns: tuple[NDArray[Any], ArrayLike]) -> None:
-    """Write numbers into arrays that have their shape already.
-
-    Args:
-        columns: What each is called, the array, and what comes in.
+def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
+    """Write numbers into an array that has its shape already.
 
     Raises:
-        ShapeError: Some have another shape, and are not one for all either.
+        ShapeError: They have another shape, and are not one for all either.
     """
-    for name, (column, value) in columns.items():
-        try:
-            column[...] = value
-        except ValueError as error:
-            raise ShapeError(
-                f"`{name}` has shape {np.shape(value)}; needed is {column.shape}."
-            ) from error
+    try:
+        column[...] = value
+    except ValueError as error:
+        raise ShapeError(
+            f"`{name}` has shape {np.shape(value)}; needed is {column.shape}."
+        ) from error

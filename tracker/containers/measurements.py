@@ -130,12 +130,10 @@ class Measurements:
         count = bearing.size
         values, covariance = np.empty((count, 2)), np.zeros((count, 2, 2))
         distance, spread = values[:, 1], covariance[:, 1, 1]
-        fill(
-            bearing_rad=(values[:, 0], bearing),
-            range_m=(distance, range_m),
-            bearing_std_rad=(covariance[:, 0, 0], bearing_std_rad),
-            range_std_m=(spread, range_std_m),
-        )
+        fill("bearing_rad", values[:, 0], bearing)
+        fill("range_m", distance, range_m)
+        fill("bearing_std_rad", covariance[:, 0, 0], bearing_std_rad)
+        fill("range_std_m", spread, range_std_m)
         covariance *= covariance
         np.copyto(spread, 1.0, where=np.isnan(distance))
         measured = trusted(
@@ -181,7 +179,7 @@ class Measurements:
         xy = xy[None, :] if xy.ndim == 1 else xy
         count = len(xy)
         spread = np.empty((count, 2, 2))
-        fill(covariance=(spread, covariance))
+        fill("covariance", spread, covariance)
         return Measurements(
             values=xy,
             covariance=spread,
@@ -212,7 +210,7 @@ def _poses(sensor_pose: ArrayLike, count: int) -> FloatArray:
     if sensor_pose is _ORIGIN:
         return constant(0.0, (count, 3))
     poses = np.empty((count, 3))
-    fill(sensor_pose=(poses, sensor_pose))
+    fill("sensor_pose", poses, sensor_pose)
     return sealed(poses)
 
 
@@ -220,7 +218,7 @@ def _column(name: str, value: ArrayLike, count: int, dtype: np.dtype[Any]) -> ND
     if isinstance(value, (bool, int)):
         return constant(value, (count,), dtype)
     column = np.empty(count, dtype)
-    fill(**{name: (column, value)})
+    fill(name, column, value)
     return sealed(column)
 
 

@@ -13,11 +13,9 @@ from numba import njit
 from tracker.containers import BoolArray, FloatArray
 from tracker.tracking.compiled.association import assign
 from tracker.tracking.compiled.loop import step
+from tracker.tracking.compiled.prediction import wrapped
 from tracker.tracking.compiled.sources import named_after_sources
 from tracker.tracking.sensor_model import RANGE_FLOOR_M
-
-_TURN = 2.0 * np.pi
-_TURNS_PER_RAD = 1.0 / _TURN
 
 
 @njit(cache=True, error_model="numpy")
@@ -73,8 +71,7 @@ def track_frame(
             level = offset - 0.5 * np.log(s00 * s_rest)
             w00, w_rest = 1.0 / s00, 1.0 / s_rest
             for row in range(measured):
-                turned = bearing_rad[row, trial] - bearing
-                turned -= _TURN * np.floor(turned * _TURNS_PER_RAD + 0.5)
+                turned = wrapped(bearing_rad[row, trial] - bearing)
                 farther = range_m[row, trial] - distance
                 rest = farther - share * turned
                 square = turned * turned * w00 + rest * rest * w_rest

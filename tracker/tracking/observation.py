@@ -140,6 +140,7 @@ def _predict(
 ) -> tuple[People, FloatArray, FloatArray]:
     """Everybody at this instant; visible to the camera, and to anything."""
     belief = predict_modes(people.belief, motion_over(dt_s, config))
+    belief = replace(belief, known=belief.merged())  # asked for by the views, hands and gates
     in_camera = np.ones(len(people))
     if view is not None or scan_view is not None:
         xy_m = belief.merged()[0][:, :2]

@@ -9,12 +9,13 @@ from tracker.tracking.compiled.loop import loop, step
 from tracker.tracking.view import ARM_M, DEPTH_MIN_M, HALF_BODY_M, OCCLUDED
 
 TURN = 2.0 * np.pi
+_TURNS_PER_RAD = 1.0 / TURN
 
 
 @step
 def wrapped(angle_rad: float) -> float:
     """The same direction in [-pi, pi)."""
-    return angle_rad - TURN * np.floor((angle_rad + np.pi) / TURN)
+    return angle_rad - TURN * np.floor((angle_rad + np.pi) * _TURNS_PER_RAD)
 
 
 @loop
