@@ -25,6 +25,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Scan
 from tracker.errors import TrackerError
 from tracker.messages import Encoded, decode
+from tracker.notes import NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.pipeline import Pipeline
 from tracker.transforms import StampedTransform, Transforms
@@ -326,10 +327,10 @@ class NodeCore:
         self._pace(result)
         publish_views(image, result, self._config, self._publish, self._has_subscribers)
         for note in result.notes:
-            if note.startswith("stamps jumped back"):
-                self._note_reset(note)
+            if note.kind is NoteKind.CLOCK_JUMPED:
+                self._note_reset(note.text)
             else:
-                self._remarks.add(Input.IMAGES.value, note)
+                self._remarks.add(Input.IMAGES.value, note.text)
 
     def _pace(self, result: FrameResult) -> None:
         """Let the search shrink before images are lost, and grow again."""

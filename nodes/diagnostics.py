@@ -19,6 +19,7 @@ from tracker.containers import FrameResult, PerceptionWork
 from tracker.messages import Encoded
 from tracker.messages.encode import header
 from tracker.messages.types import build, serialize
+from tracker.notes import NoteKind
 
 #: Reports are due so often; with `SILENT_S` a silent input shows within two seconds.
 REPORT_PERIOD_S = 0.5
@@ -187,8 +188,8 @@ class Diagnostics:
         last, frame_ns = self._last, self._last_frame_ns
         if last is None or frame_ns is None or self._since(frame_ns) >= SILENT_S:
             return OK, otherwise
-        why = next((note for note in last.notes if note.startswith("no pose")), "no pose")
-        return WARN, why
+        why = (note.text for note in last.notes if note.kind is NoteKind.NO_POSE)
+        return WARN, next(why, "no pose")
 
     def _processing_status(self, config: Config, detector: str, is_enabled: bool) -> Status:
         rate_hz, lost = self._rate("processed"), self._increase("lost")
@@ -210,7 +211,7 @@ class Diagnostics:
             "detector": detector,
             "model_complexity": config.model_complexity,
             "raise_rule": config.raise_rule,
-            "notes": "; ".join(self._last.notes) if self._last else "",
+            "notes": "; ".join(map(str, self._last.notes)) if self._last else "",
         }
         if self._work:
             values |= _work_values(self._work)

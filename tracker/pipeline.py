@@ -19,6 +19,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Measurements, Scan
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform
+from tracker.notes import Note, NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.ranging import (
     Background,
@@ -75,7 +76,7 @@ class Pipeline:
         self._background = Background()
         self._last_stamp_ns = -1
         self._camera_pose: RigidTransform | None = None
-        self._notes: list[str] = []
+        self._notes: list[Note] = []
 
     def add_transform(self, sample: StampedTransform) -> None:
         """Take in one transform.
@@ -212,9 +213,14 @@ class Pipeline:
         self._camera_pose = None
         self._last_stamp_ns = -1
 
+    def _note(self, kind: NoteKind, text: str) -> None:
+        self._notes.append(Note(kind, text))
+
     def _jump_back(self, image: CameraImage) -> None:
         back_s = (self._last_stamp_ns - image.stamp_ns) / 1e9
-        self._notes.append(f"stamps jumped back by {back_s:.3f} s: tracks were reset")
+        self._note(
+            NoteKind.CLOCK_JUMPED, f"stamps jumped back by {back_s:.3f} s: tracks were reset"
+        )
         self.tracker.reset()
         self._background.reset()
         self.detector.reset()
@@ -243,13 +249,14 @@ class Pipeline:
         try:
             found = self.transforms.lookup(self.config.fixed_frame, frame, image.stamp_ns)
         except TransformError as error:
-            self._notes.append(f"no pose: {error}")
+            self._note(NoteKind.NO_POSE, f"no pose: {error}")
             if self._camera_pose is None:
                 return RigidTransform(), False
             return self._camera_pose, False
         if self._camera_pose is None and self.tracker.has_tracks:
-            self._notes.append(
-                "the first transform has come: tracks begin anew in the fixed frame"
+            self._note(
+                NoteKind.NEW_FIXED_FRAME,
+                "the first transform has come: tracks start again in the fixed frame",
             )
             self.tracker.reset()
             self._background.reset()
@@ -281,23 +288,26 @@ class Pipeline:
     ) -> tuple[Scan | None, FloatArray | None]:
         """The scan nearest to a stamp, and its laser in the fixed frame at its own stamp."""
         if not self._scans:
-            self._notes.append("no scan has come")
+            self._note(NoteKind.NO_SCAN, "no scan has come")
             return None, None
         scan = min(self._scans, key=lambda candidate: abs(candidate.stamp_ns - stamp_ns))
         age_s = abs(scan.stamp_ns - stamp_ns) / 1e9
         if age_s > self.config.scan_max_age_s:
             limit_s = self.config.scan_max_age_s
-            self._notes.append(f"no scan within {limit_s:g} s: the nearest is {age_s:.3f} s off")
+            self._note(
+                NoteKind.SCAN_TOO_OLD,
+                f"no scan within {limit_s:g} s: the nearest is {age_s:.3f} s off",
+            )
             return None, None
         if len(scan.ranges_m) == 0:
-            self._notes.append("the scan has no beams")
+            self._note(NoteKind.SCAN_WITHOUT_BEAMS, "the scan has no beams")
             return None, None
         if not is_located:
             return scan, self._laser_beside_camera(scan, fixed_from_camera).planar
         try:
             laser = self.transforms.lookup(self.config.fixed_frame, scan.frame_id, scan.stamp_ns)
         except TransformError as error:
-            self._notes.append(f"scan unused: {error}")
+            self._note(NoteKind.SCAN_NOT_LOCATED, f"scan unused: {error}")
             return None, None
         return scan, laser.planar
 
@@ -309,7 +319,10 @@ class Pipeline:
         try:
             mounting = self.transforms.lookup(scan.frame_id, frame, scan.stamp_ns)
         except TransformError:
-            self._notes.append("no mounting of the laser: it is taken to be the camera's")
+            self._note(
+                NoteKind.LASER_MOUNTING_UNKNOWN,
+                "no mounting of the laser: it is taken to be the camera's",
+            )
             return fixed_from_camera
         laser_from_camera = body_pose(mounting, frame, self.config.camera_axes)
         return fixed_from_camera @ laser_from_camera.inverse()

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from tracker.containers import FrameResult
 
-#: Beginnings of a frame's notes that mean broken input, rather than an ordinary gap.
-_FAULTS = ("stamps jumped back", "the scan has no beams")
-
 
 class Problems:
     """Counts faults by kind; memory does not grow with their number.
@@ -33,9 +30,8 @@ class Problems:
     def note_frame(self, result: FrameResult) -> None:
         """Pick the faults from what the pipeline noted about one image."""
         for note in result.notes:
-            for kind in _FAULTS:
-                if note.startswith(kind):
-                    self.add(kind, f"{note} (image at {result.stamp_ns / 1e9:.3f} s)")
+            if note.kind.is_fault:
+                self.add(note.kind.value, f"{note} (image at {result.stamp_ns / 1e9:.3f} s)")
 
     def lines(self) -> tuple[str, ...]:
         """One line for each kind of fault."""

@@ -5,6 +5,7 @@ from scipy.spatial.transform import Rotation
 from tracker import CameraImage, Config, Hands, Pipeline, Scan
 from tracker.camera import CameraModel
 from tracker.geometry import RigidTransform, euler_to_quaternion
+from tracker.notes import Note, NoteKind
 from tracker.simulation.hand_shape import LANDMARKS
 from tracker.transforms import StampedTransform
 
@@ -108,20 +109,20 @@ def test_hand_raised_needs_no_lidar_and_gives_no_pose_then(located):
     result = play(located, 4, scan=None)[-1]
     assert result.hand_raised
     assert result.customer_pose is None
-    assert result.notes == ("no scan has come",)
+    assert result.notes == (Note(NoteKind.NO_SCAN, "no scan has come"),)
 
 
 def test_an_old_scan_is_not_used(located):
     located.add_scan(person_scan(START_NS - 2_000_000_000))
     result = play(located, 2, scan=None)[-1]
     assert result.scan is None
-    assert result.notes[0].startswith("no scan within 0.25 s")
+    assert result.notes[0].text.startswith("no scan within 0.25 s")
 
 
 def test_a_scan_without_beams_is_noted(located):
     empty = lambda stamp: Scan(stamp, "laser", 0.0, 0.0, 0.1, 10.0, np.zeros(0))  # noqa: E731
     result = play(located, 2, scan=empty)[-1]
-    assert result.notes == ("the scan has no beams",)
+    assert [note.kind for note in result.notes] == [NoteKind.SCAN_WITHOUT_BEAMS]
 
 
 def test_without_transforms_hands_are_still_reported_and_no_pose_is_given():
@@ -129,7 +130,7 @@ def test_without_transforms_hands_are_still_reported_and_no_pose_is_given():
     results = play(pipeline, 8)
     assert results[-1].hand_raised
     assert all(result.customer_pose is None for result in results)
-    assert "no transform names the frame" in results[-1].notes[0].lower()
+    assert "no transform names the frame" in results[-1].notes[0].text.lower()
 
 
 def test_an_image_waits_for_the_transform_of_its_stamp():
@@ -159,14 +160,14 @@ def test_a_late_map_frame_begins_the_tracks_anew_in_the_map():
     assert early.tracks.mean[0, :2] == pytest.approx([2.0, 0.0], abs=0.15)
     pipeline.add_transform(static("map", "base_link", RigidTransform.from_planar(5.0, 1.0, 0.0)))
     late = play(pipeline, 3, START_NS + 4 * PERIOD_NS)
-    assert any("begin anew" in note for note in late[0].notes)
+    assert NoteKind.NEW_FIXED_FRAME in [note.kind for note in late[0].notes]
     assert late[-1].customer_pose.position_m == pytest.approx((7.0, 1.0, 0.0), abs=0.15)
 
 
 def test_a_looped_recording_resets_and_goes_on(located):
     play(located, 5, START_NS + 10**10)
     results = play(located, 4)
-    assert "jumped back" in results[0].notes[0]
+    assert results[0].notes[0].kind is NoteKind.CLOCK_JUMPED
     assert located.detector.resets == 1
     assert not results[0].hand_raised
     assert results[-1].hand_raised

@@ -22,6 +22,7 @@ from tracker.containers.measurements import Measurements
 from tracker.containers.sensors import Scan
 from tracker.containers.tracks import Tracks
 from tracker.errors import ShapeError
+from tracker.notes import Note
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,8 +120,7 @@ class FrameResult:
         sensor_pose: x_m, y_m, yaw_rad of the camera in the fixed frame; None without a transform.
         scan: The scan that was used, if any.
         scan_pose: x_m, y_m, yaw_rad of that scan's laser in the fixed frame, if known.
-        notes: What was missing or odd about this image, as short sentences ("no scan within
-            0.2 s").
+        notes: What was missing or odd about this image.
         work: What perception did, where the detector tells; of all fields the only one that
             differs when the same recording is replayed.
     """
@@ -135,5 +135,5 @@ class FrameResult:
     sensor_pose: FloatArray | None
     scan: Scan | None
     scan_pose: FloatArray | None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     work: PerceptionWork | None = None

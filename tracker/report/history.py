@@ -13,12 +13,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tracker.containers import FloatArray, FrameResult, Tracks
+from tracker.notes import NoteKind
 from tracker.report.hit_grid import HitGrid
 from tracker.report.trail import Trail
 
 PEOPLE_KEPT = 1000
-_NOTES_KEPT = 100
-OTHER_NOTES = "other notes"
 
 
 @dataclass(slots=True, eq=False)
@@ -85,7 +84,6 @@ class History:
         people_dropped: Earlier people who were given up to bound memory.
         frames_processed: Images so far.
         frames_raised: Images after which some hand was up.
-        notes: How often each note came, the rare ones of very many as `OTHER_NOTES`.
         camera_path: Rows of x_m, y_m, yaw_rad of the camera in the fixed frame.
         walls: Where scans met something.
         start_ns: Stamp of second 0, or None before the first image.
@@ -97,7 +95,8 @@ class History:
         self.people_dropped = 0
         self.frames_processed = 0
         self.frames_raised = 0
-        self.notes: Counter[str] = Counter()
+        self._notes: Counter[NoteKind] = Counter()
+        self._first_notes: dict[NoteKind, str] = {}
         self.camera_path = Trail(3, capacity=2048)
         self.walls = HitGrid()
         self.start_ns = start_ns
@@ -119,8 +118,8 @@ class History:
         self.frames_processed += 1
         self.frames_raised += int(result.hand_raised)
         for note in result.notes:
-            known = note in self.notes or len(self.notes) < _NOTES_KEPT
-            self.notes[note if known else OTHER_NOTES] += 1
+            self._notes[note.kind] += 1
+            self._first_notes.setdefault(note.kind, note.text)
         if result.sensor_pose is not None:
             x, y, yaw = result.sensor_pose
             self.camera_path.append(float(x), float(y), float(yaw))
@@ -130,6 +129,11 @@ class History:
                 self.walls.add(scan, result.scan_pose)
             self._scan_stamp_ns = scan.stamp_ns
         self._write_people(result.tracks[result.tracks.confirmed])
+
+    @property
+    def notes(self) -> dict[str, int]:
+        """How many images carried each kind of note; the key is the first one's text."""
+        return {self._first_notes[kind]: count for kind, count in self._notes.most_common()}
 
     @property
     def duration_s(self) -> float:

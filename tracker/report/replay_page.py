@@ -131,7 +131,7 @@ def _gallery(pictures: tuple[Picture, ...]) -> tuple[Part, ...]:
 
 
 def _remarks(history: History, remarks: tuple[str, ...]) -> tuple[Part, ...]:
-    notes = tuple((note, str(count)) for note, count in history.notes.most_common())
+    notes = tuple((note, str(count)) for note, count in history.notes.items())
     parts: list[Part] = [Text(remarks)] if remarks else []
     if notes:
         parts.append(Table(("noted", "images"), notes, numeric=frozenset({1})))

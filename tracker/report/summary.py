@@ -30,7 +30,7 @@ def summarize(
         start_stamp_ns      stamp of second 0, or null without any image
         duration_s          sensor time covered by the images
         frames              {seen, processed, hand_raised}; seen is null where nobody counted
-        notes               {note: images that carried it}
+        notes               {first note of a kind: images that carried one of that kind}
         people              one entry per confirmed customer, in the order they came:
             id              as in tracks.csv and output.mcap
             first_seen_s, last_seen_s
@@ -55,7 +55,7 @@ def summarize(
             "processed": history.frames_processed,
             "hand_raised": history.frames_raised,
         },
-        "notes": dict(history.notes.most_common()),
+        "notes": history.notes,
         "people": [_person(history, person) for person in history.people.values()],
         "people_dropped": history.people_dropped,
     }

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tracker.containers import FrameResult, Hands, Measurements, Scan, Tracks
+from tracker.notes import Note, NoteKind
 
 START_NS = 1_700_000_000_123_456_789
 PERIOD_NS = 100_000_000
@@ -106,7 +107,7 @@ def make_result(frame: int, rng: np.random.Generator) -> FrameResult:
         stamp_ns=stamp_ns, hands=Hands.none(), measurements=measurements, tracks=tracks,
         hand_raised=bool(up_ids), customer_pose=None, approach_pose=None, sensor_pose=pose,
         scan=_scan(stamp_ns, pose, bodies, rng), scan_pose=pose,
-        notes=() if frame % 100 else ("no scan within 0.25 s",),
+        notes=() if frame % 100 else (Note(NoteKind.SCAN_TOO_OLD, "no scan within 0.25 s"),),
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from rich.console import Console
 
 from tracker.errors import RecordingError
 from tracker.evaluation.episodes import EpisodeEvaluation
+from tracker.notes import Note, NoteKind
 from tracker.report.history import History
 from tracker.report.summary import summarize, summary_table, write_summary
 
@@ -24,7 +25,14 @@ def history(result_of):
     ):
         selected = 1 if second == 12 else None
         people = ((1, 0.1 * second, 2.0, is_up),)
-        history.write(result_of(second * 10**9, *people, selected=selected, notes=("no scan",)))
+        history.write(
+            result_of(
+                second * 10**9,
+                *people,
+                selected=selected,
+                notes=(Note(NoteKind.NO_SCAN, "no scan"),),
+            )
+        )
     return history
 
 

@@ -1,0 +1,56 @@
+"""What was missing or odd about an image? A kind that code may ask for, and words for people."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class NoteKind(Enum):
+    """What a note is about; the value is its name in files and diagnostics."""
+
+    CLOCK_JUMPED = "clock jumped"
+    NO_POSE = "no pose"
+    NEW_FIXED_FRAME = "new fixed frame"
+    NO_SCAN = "no scan"
+    SCAN_TOO_OLD = "scan too old"
+    SCAN_WITHOUT_BEAMS = "scan without beams"
+    SCAN_NOT_LOCATED = "scan not located"
+    LASER_MOUNTING_UNKNOWN = "laser mounting unknown"
+
+    @property
+    def is_fault(self) -> bool:
+        """Whether it means broken input, rather than an ordinary gap."""
+        return self in _FAULTS
+
+    @property
+    def leaves_scan_unused(self) -> bool:
+        """Whether it tells why an image got no scan."""
+        return self in _WITHOUT_SCAN
+
+
+_FAULTS = frozenset({NoteKind.CLOCK_JUMPED, NoteKind.SCAN_WITHOUT_BEAMS})
+_WITHOUT_SCAN = frozenset(
+    {
+        NoteKind.NO_SCAN,
+        NoteKind.SCAN_TOO_OLD,
+        NoteKind.SCAN_WITHOUT_BEAMS,
+        NoteKind.SCAN_NOT_LOCATED,
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """One thing that was missing or odd about an image.
+
+    Attributes:
+        kind: What it is about; decisions are made by it, never by the text.
+        text: The same as a short sentence, with names and numbers.
+    """
+
+    kind: NoteKind
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
