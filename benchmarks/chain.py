@@ -19,13 +19,11 @@ from rich.console import Console
 from rich.table import Table
 
 from tracker import Config, Pipeline
-from tracker.camera import CameraModel
-from tracker.containers import CameraImage, Hands, Scan
+from tracker.containers import CameraImage, Hands
 from tracker.perception import HandDetector, open_detector
 from tracker.perception.models import ModelStore, ensure_models
 from tracker.replay_outputs import ReplayOutputs
 from tracker.simulation import load_scene, simulate
-from tracker.transforms import StampedTransform
 
 
 def timed(detector: HandDetector) -> list[float]:
@@ -55,14 +53,7 @@ def run(config: Config, scene_name: str, seconds: float) -> dict[str, np.ndarray
                 first_ns = first_ns or log_ns
                 if log_ns - first_ns > seconds * 1e9:
                     break
-                if isinstance(event, StampedTransform):
-                    pipeline.add_transform(event)
-                elif isinstance(event, Scan):
-                    pipeline.add_scan(event)
-                elif isinstance(event, CameraModel):
-                    pipeline.set_camera(event)
-                elif isinstance(event, CameraImage):
-                    pipeline.add_image(event)
+                pipeline.add(event, log_ns)
                 begin = time.perf_counter()
                 for image, result in pipeline.advance(log_ns):
                     whole.append(time.perf_counter() - begin)

@@ -14,21 +14,19 @@ from collections.abc import Callable, Mapping
 from nodes.diagnostics import WARN, Diagnostics, encode_statuses
 from nodes.fault_log import FaultLog
 from nodes.header_peek import peek_header
-from nodes.image_gate import ImageGate, Verdict
-from nodes.inbox import IMAGES_KEPT, Inbox, WaitingImage
+from nodes.inbox import Inbox
 from nodes.outputs import HasSubscribers, Publish, publish_answer, publish_nobody, publish_views
-from nodes.stamp_watch import StampWatch, Step
 from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
 from nodes.work_budget import WorkBudget
-from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import CameraImage, FrameResult, Scan
+from tracker.containers import CameraImage, FrameResult
 from tracker.errors import TrackerError
 from tracker.messages import Encoded, decode
 from tracker.notes import NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.pipeline import Pipeline
-from tracker.transforms import StampedTransform, Transforms
+from tracker.transforms import Transforms
+from tracker.waiting import IMAGES_KEPT, WaitingImage
 
 #: Tells a text to the user; levels are "info", "warning" and "error".
 Log = Callable[[str, str], None]
@@ -38,9 +36,6 @@ _PATIENCE_STEP_S = 0.05
 #: Images that a worker may catch up with after it was held up, the share of a period that an image
 #: may take on average for that, and over how many images the average goes.
 _CATCH_UP, _KEEPS_UP, _BUSY_IMAGES = 3, 0.8, 10
-#: Transforms of one frame come in any order within this; a step beyond the other is no slow robot.
-_TRANSFORM_BACK_NS, _TRANSFORM_AHEAD_NS = 1_000_000_000, 3_600_000_000_000
-_FRAMES_WATCHED = 1000
 #: A robot's drivers start with the node; what is missing is worth a word in the log after this.
 _SETTLED_NS = 5_000_000_000
 #: How long `stop` waits for the frame at hand.
@@ -88,15 +83,12 @@ class NodeCore:
         self._config = config
         self._pipeline = Pipeline(config, detector, transforms)
         self._inbox = Inbox()
-        self._gate_lock = threading.Lock()
-        self._gate = ImageGate(config.processing_rate)
+        self._images = self._pipeline.room.images
         names = {item: topic.name for item, topic in INPUT_TOPICS.items()}
         names[Input.IMAGES] = IMAGE_TOPICS[config.image_transport].name
         self._diagnostics = Diagnostics(steady_ns, names | dict(topic_names or {}))
         self._faults = FaultLog(lambda text: log("warning", text), steady_ns)
         self._remarks = FaultLog(lambda text: log("info", text), steady_ns)
-        self._transform_watches: dict[str, StampWatch] = {}
-        self._transforms_until_ns: int | None = None
         self._busy_s = 0.0
         self._budget = WorkBudget()
         self._began_ns = steady_ns()
@@ -119,6 +111,11 @@ class NodeCore:
     def is_alive(self) -> bool:
         """Whether the worker runs; it ends by `stop`, or by a mistake of ours that it prints."""
         return self._worker.is_alive()
+
+    @property
+    def images_waiting(self) -> int:
+        """How many images wait for a transform or for the worker."""
+        return len(self._images)
 
     def start(self) -> None:
         """Begin to work."""
@@ -177,10 +174,8 @@ class NodeCore:
 
     def configure(self, config: Config) -> None:
         """Change parameters while running; only those that are `live` take effect."""
-        with self._gate_lock:
-            if config.processing_rate != self._config.processing_rate:
-                self._gate.set_rate(config.processing_rate)
-            self._config = config
+        self._config = config
+        self._images.set_rate(config.processing_rate)
         self._inbox.order(lambda: self._pipeline.configure(config))
 
     def refuse(self, item: Input, text: str) -> None:
@@ -194,7 +189,7 @@ class NodeCore:
             self._config,
             type(self._pipeline.detector).__name__,
             is_enabled=self._is_enabled,
-            lost=self._inbox.lost,
+            lost=self._images.lost,
         )
         if self._steady_ns() - self._began_ns >= _SETTLED_NS:
             for status in statuses:
@@ -210,30 +205,20 @@ class NodeCore:
         except TrackerError as error:
             self.refuse(Input.IMAGES, str(error))
             return
-        with self._gate_lock:
-            verdict = self._gate.judge(header.stamp_ns)
-        stamp_s = header.stamp_ns / 1e9
-        if verdict is Verdict.REPEATED:
-            self.refuse(
-                Input.IMAGES,
-                f"the stamp {stamp_s:.3f} s came twice; does the driver fill in header.stamp?",
-            )
-        elif verdict is Verdict.ODD:
-            self.refuse(
-                Input.IMAGES,
-                f"the stamp {stamp_s:.3f} s is far from the one before; the image is passed over, "
-                "and the new time believed if the next image agrees",
-            )
-        if verdict is Verdict.JUMPED_BACK:
-            self._inbox.drop_images()  # those are of the time before
-        if verdict in (Verdict.ADMITTED, Verdict.JUMPED_BACK):
-            self._inbox.put_image(WaitingImage(message, *header, self._steady_ns()))
+        verdict = self._images.offer(
+            WaitingImage(*header, self._steady_ns(), lambda: _image_of(message))
+        )
+        if verdict.is_refused:
+            stamp_s = header.stamp_ns / 1e9
+            self.refuse(Input.IMAGES, f"the stamp {stamp_s:.3f} s: {verdict.value}")
+        elif verdict.is_admitted:
+            self._inbox.wake()
 
     def _work(self) -> None:
         was_busy = False
-        while self._inbox.wait(_PATIENCE_STEP_S if self._inbox.images_waiting else None):
+        while self._inbox.wait(_PATIENCE_STEP_S if len(self._images) else None):
             self._catch_up()
-            images = self._inbox.take_images(self._is_ready, at_most=self._backlog(was_busy))
+            images = self._images.take(self._is_ready, at_most=self._backlog(was_busy))
             for image in images:
                 self._process(image)
                 self._catch_up()
@@ -266,54 +251,25 @@ class NodeCore:
     def _take_in(self, item: Input, message: Encoded) -> None:
         is_static = item is Input.STATIC_TRANSFORMS
         try:
-            for event in decode(message.type_name, message.cdr, is_static=is_static):
-                if isinstance(event, Scan):
-                    self._pipeline.add_scan(event)
-                elif isinstance(event, CameraModel):
-                    self._pipeline.set_camera(event)
-                elif isinstance(event, StampedTransform) and self._is_timely(event):
-                    self._pipeline.add_transform(event)
+            events = list(decode(message.type_name, message.cdr, is_static=is_static))
         except TrackerError as error:
             self.refuse(item, str(error))
-
-    def _is_timely(self, sample: StampedTransform) -> bool:
-        """Keep a single absurd stamp out of the buffer, where it would outdate all others."""
-        if sample.is_static:
-            return True
-        if len(self._transform_watches) > _FRAMES_WATCHED:  # somebody invents names
-            self._transform_watches.clear()
-        watch = self._transform_watches.setdefault(
-            sample.child,
-            StampWatch(_TRANSFORM_BACK_NS, _TRANSFORM_AHEAD_NS, self._transforms_until_ns),
-        )
-        step = watch.judge(sample.stamp_ns)
-        if step is Step.ODD:
-            self.refuse(
-                Input.TRANSFORMS,
-                f"the stamp {sample.stamp_ns / 1e9:.3f} s of {sample.child!r} is far from the one "
-                "before; the new time is believed if the next one agrees",
-            )
-        elif step is Step.JUMPED_BACK:
-            self._pipeline.transforms.forget_after(sample.stamp_ns)
-        if step is Step.ODD:
-            return False
-        self._transforms_until_ns = sample.stamp_ns
-        return True
+            return
+        for event in events:
+            try:
+                self._pipeline.add(event)
+            except TrackerError as error:
+                self.refuse(item, str(error))
 
     def _is_ready(self, image: WaitingImage) -> bool:
-        """Whether the transform of its stamp is there, or it has waited long enough for it."""
-        waited_s = (self._steady_ns() - image.arrived_ns) / 1e9
-        if waited_s >= self._config.transform_wait_s or not self._diagnostics.is_hopeful():
-            return True
-        return self._pipeline.transforms.can_lookup(
-            self._config.fixed_frame, self._config.camera_frame or image.frame_id, image.stamp_ns
-        )
+        """Whether an image need not wait any longer for the transform of its stamp."""
+        now_ns = self._steady_ns() if self._diagnostics.is_hopeful() else None
+        return self._pipeline.is_ready(image, now_ns)
 
     def _process(self, waiting: WaitingImage) -> None:
         began_ns = self._steady_ns()
         try:
-            (image,) = decode(*waiting.message)
-            assert isinstance(image, CameraImage), "the shell subscribes to images only"
+            image = waiting.open()
             result = self._pipeline.process(image)
         except TrackerError as error:
             self.refuse(Input.IMAGES, str(error))
@@ -344,16 +300,11 @@ class NodeCore:
         self._pipeline.tracker.selector.release()
 
     def _reset(self, reason: str) -> None:
-        self._inbox.drop_images()
-        with self._gate_lock:
-            self._gate.reset()
         self._pipeline.reset()
         self._note_reset(reason)
 
     def _forget_everybody(self) -> None:
-        self._inbox.drop_images()
-        with self._gate_lock:
-            self._gate.reset()
+        self._images.reset()
         self._pipeline.tracker.reset()
         self._pipeline.detector.reset()
         stamp_ns = self._last.stamp_ns if self._last is not None else 0
@@ -363,6 +314,12 @@ class NodeCore:
     def _note_reset(self, reason: str) -> None:
         self._diagnostics.resets += 1
         self._log("warning", f"Everybody is forgotten: {reason}.")
+
+
+def _image_of(message: Encoded) -> CameraImage:
+    (image,) = decode(*message)
+    assert isinstance(image, CameraImage), "the shell subscribes to images only"
+    return image
 
 
 def _greeting(config: Config) -> str:

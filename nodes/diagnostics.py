@@ -20,6 +20,7 @@ from tracker.messages import Encoded
 from tracker.messages.encode import header
 from tracker.messages.types import build, serialize
 from tracker.notes import NoteKind
+from tracker.scan_use import ScanUse
 
 #: Reports are due so often; with `SILENT_S` a silent input shows within two seconds.
 REPORT_PERIOD_S = 0.5
@@ -27,6 +28,8 @@ REPORT_PERIOD_S = 0.5
 SILENT_S = 0.9
 #: Frames over which latency is told, and reports over which rates are.
 _LATENCIES, _REPORTS = 200, 10
+#: A scanner that serves none of so many images in a row is worth a warning.
+_UNUSED_IMAGES = 10
 #: Stamps farther than this from the node's clock are of another time, not late.
 _OTHER_TIME_S = 10.0
 
@@ -84,6 +87,7 @@ class Diagnostics:
         self._work = deque[PerceptionWork](maxlen=_LATENCIES)
         self._reports = deque[tuple[int, dict[str, int]]](maxlen=_REPORTS + 1)
         self._last: FrameResult | None = None
+        self._scan_use = ScanUse()
         self._processed = 0
         self._last_frame_ns: int | None = None
         self._located_ns: int | None = None
@@ -112,6 +116,9 @@ class Diagnostics:
         with self._lock:
             self._processed += 1
             self._last = result
+            self._scan_use.add(result)
+            if self._scan_use.used:
+                self._scan_use.reset()
             self._latency_s.append(latency_s)
             self._busy_s.append(busy_s)
             if result.work is not None:
@@ -181,7 +188,12 @@ class Diagnostics:
         age_s = self._since(seen.last_ns)
         if age_s >= SILENT_S:
             return level, f"stale: nothing has come on {self._topic_names[item]} for {age_s:.1f} s"
-        return self._judge_connection("coming") if item is Input.TRANSFORMS else (OK, "coming")
+        if item is Input.TRANSFORMS:
+            return self._judge_connection("coming")
+        unused = self._scan_use.frames
+        if item is Input.SCAN and unused >= _UNUSED_IMAGES:
+            return WARN, f"no scan was used in the last {unused} images: {self._scan_use.reason()}"
+        return OK, "coming"
 
     def _judge_connection(self, otherwise: str) -> tuple[int, str]:
         """Transforms come, yet the last image had no pose."""

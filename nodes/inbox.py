@@ -15,22 +15,6 @@ from nodes.topics import Input
 from tracker.messages import Encoded
 
 
-class WaitingImage(NamedTuple):
-    """An image whose turn it is, still as bytes.
-
-    Attributes:
-        message: The serialized image.
-        stamp_ns: From its header.
-        frame_id: From its header.
-        arrived_ns: On the steady clock.
-    """
-
-    message: Encoded
-    stamp_ns: int
-    frame_id: str
-    arrived_ns: int
-
-
 class Delivery(NamedTuple):
     """What the worker takes out at a time.
 
@@ -53,9 +37,6 @@ _KEPT = {
     Input.SCAN: 40,
 }
 
-#: Images that may wait at a time, for a transform or for the worker.
-IMAGES_KEPT = 16
-
 
 class Inbox:
     """Thread-safe, bounded, and never slow for who puts something in."""
@@ -64,24 +45,13 @@ class Inbox:
         self._changed = threading.Condition()
         self._messages = {item: deque[Encoded](maxlen=size) for item, size in _KEPT.items()}
         self._orders = deque[Callable[[], None]]()
-        self._images = deque[WaitingImage]()
         self._has_news = False
         self._is_closed = False
-        self.lost = 0
 
     def put(self, item: Input, message: Encoded) -> None:
         """Store anything but an image."""
         with self._changed:
             self._messages[item].append(message)
-            self._tell()
-
-    def put_image(self, image: WaitingImage) -> None:
-        """Store an image whose turn it is."""
-        with self._changed:
-            if len(self._images) == IMAGES_KEPT:
-                self._images.popleft()
-                self.lost += 1
-            self._images.append(image)
             self._tell()
 
     def order(self, function: Callable[[], None]) -> None:
@@ -119,38 +89,6 @@ class Inbox:
             for kept in self._messages.values():
                 kept.clear()
         return Delivery(orders, messages)
-
-    def take_images(
-        self, is_ready: Callable[[WaitingImage], bool], *, at_most: int
-    ) -> list[WaitingImage]:
-        """Take out the images that are ready, oldest first, up to the first that is not.
-
-        Args:
-            is_ready: Whether an image need not wait any longer.
-            at_most: Of more than these only the newest count, the others are lost.
-        """
-        with self._changed:
-            waiting = list(self._images)
-        count = 0
-        while count < len(waiting) and is_ready(waiting[count]):
-            count += 1
-        ready = waiting[:count]
-        with self._changed:
-            # Meanwhile callbacks may have added to the end, or pushed out the first.
-            while self._images and ready and self._images[0].arrived_ns <= ready[-1].arrived_ns:
-                self._images.popleft()
-            self.lost += max(len(ready) - at_most, 0)
-        return ready[-at_most:]
-
-    def drop_images(self) -> None:
-        """Forget the images that wait."""
-        with self._changed:
-            self._images.clear()
-
-    @property
-    def images_waiting(self) -> int:
-        """How many images wait."""
-        return len(self._images)
 
     def _tell(self) -> None:
         self._has_news = True

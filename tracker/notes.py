@@ -15,6 +15,7 @@ class NoteKind(Enum):
     NO_SCAN = "no scan"
     SCAN_TOO_OLD = "scan too old"
     SCAN_WITHOUT_BEAMS = "scan without beams"
+    SCAN_WITHOUT_RETURNS = "scan without returns"
     SCAN_NOT_LOCATED = "scan not located"
     LASER_MOUNTING_UNKNOWN = "laser mounting unknown"
 
@@ -25,7 +26,7 @@ class NoteKind(Enum):
 
     @property
     def leaves_scan_unused(self) -> bool:
-        """Whether it tells why an image got no scan."""
+        """Whether it tells why no scan was of use for an image."""
         return self in _WITHOUT_SCAN
 
 
@@ -35,6 +36,7 @@ _WITHOUT_SCAN = frozenset(
         NoteKind.NO_SCAN,
         NoteKind.SCAN_TOO_OLD,
         NoteKind.SCAN_WITHOUT_BEAMS,
+        NoteKind.SCAN_WITHOUT_RETURNS,
         NoteKind.SCAN_NOT_LOCATED,
     }
 )

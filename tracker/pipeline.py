@@ -8,9 +8,9 @@ the data's own: nothing here reads a clock.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,14 +28,18 @@ from tracker.ranging import (
     measure_people,
     scan_people,
 )
-from tracker.rate_limiter import RateLimiter
 from tracker.tracking import PersonTracker, View, approach_pose, customer_pose
 from tracker.tracking.innovations import Watch
-from tracker.transforms import StampedTransform, TransformBuffer, Transforms
+from tracker.transforms import StampedTransform, Transforms
+from tracker.waiting import Verdict, WaitingImage, WaitingRoom
 
-#: Scans remembered, and images that may wait at a time; older ones give way.
-_SCANS_KEPT = 40
-_IMAGES_WAITING = 16
+if TYPE_CHECKING:
+    from tracker.messages import Event
+
+#: A step of the stamps beyond this is another time; nobody is remembered for so long.
+_FORGOTTEN_NS = 60_000_000_000
+#: A person is seen by two beams at least.
+_BEAMS_MIN = 2
 
 
 class Pipeline:
@@ -67,63 +71,97 @@ class Pipeline:
             detector = open_detector(self.config)
         self.detector = detector
         self.tracker = PersonTracker(self.config, watch=watch)
-        self.transforms: Transforms = transforms or TransformBuffer()
+        self.room = WaitingRoom(self.config.processing_rate, transforms)
         self.camera = _configured_camera(self.config)
-        self._limiter = RateLimiter(self.config.processing_rate)
-        self._scans: deque[Scan] = deque(maxlen=_SCANS_KEPT)
-        self._waiting: deque[CameraImage] = deque(maxlen=_IMAGES_WAITING)
-        self._sustained_by: Scan | None = None
+        self._sustained_ns = -1
         self._background = Background()
-        self._last_stamp_ns = -1
+        self._last_stamp_ns: int | None = None
         self._camera_pose: RigidTransform | None = None
         self._notes: list[Note] = []
+
+    @property
+    def transforms(self) -> Transforms:
+        """Where frames were."""
+        return self.room.transforms
+
+    def add(self, event: Event, now_ns: int | None = None) -> Verdict | None:
+        """Take in whatever a sensor sends: an image, a scan, a transform or intrinsics.
+
+        Args:
+            event: What came; the truth of a simulation is left alone.
+            now_ns: When it came, on the clock that `advance` is told.
+
+        Returns:
+            What becomes of it where it is an image.
+
+        Raises:
+            TransformError: As `add_transform`.
+            ClockError: As `add_transform`.
+        """
+        if isinstance(event, CameraImage):
+            return self.add_image(event, now_ns)
+        if isinstance(event, Scan):
+            self.add_scan(event)
+        elif isinstance(event, StampedTransform):
+            self.add_transform(event)
+        elif isinstance(event, CameraModel):
+            self.set_camera(event)
+        return None
 
     def add_transform(self, sample: StampedTransform) -> None:
         """Take in one transform.
 
         Raises:
             TransformError: It is unusable; see `TransformBuffer.add`.
-            ClockError: Its stamp is negative.
+            ClockError: Its stamp is negative, or far from the one before.
         """
-        self.transforms.add(sample)
+        self.room.add_transform(sample)
 
     def add_scan(self, scan: Scan) -> None:
         """Take in one scan."""
-        self._scans.append(scan)
+        self.room.add_scan(scan)
 
     def set_camera(self, camera: CameraModel) -> None:
         """Take in calibrated intrinsics, unless `use_camera_info` is off."""
         if self.config.use_camera_info:
             self.camera = camera
 
-    def add_image(self, image: CameraImage) -> bool:
-        """Queue an image, if it is its turn at `processing_rate`.
+    def add_image(self, image: CameraImage, now_ns: int | None = None) -> Verdict:
+        """Queue an image, if its stamp makes sense and it is its turn at `processing_rate`.
+
+        Args:
+            image: The image.
+            now_ns: When it came, on the clock that `advance` is told; by default its stamp.
 
         Returns:
-            Whether it will be processed.
+            Whether it will be processed, and if not, why.
         """
-        if not self._limiter.admits(image.stamp_ns):
-            return False
-        self._waiting.append(image)
-        return True
+        since_ns = image.stamp_ns if now_ns is None else now_ns
+        return self.room.images.offer(
+            WaitingImage(image.stamp_ns, image.frame_id, since_ns, lambda: image)
+        )
 
     def advance(self, now_ns: int | None = None) -> Iterator[tuple[CameraImage, FrameResult]]:
         """Process the images whose turn has come, in order.
 
-        An image's turn comes when the transform of its stamp is there, or when it has waited for
-        `transform_wait_s`.
-
         Args:
             now_ns: Data time; None means that nothing more will come, so nobody waits any longer.
         """
-        while self._waiting:
-            image = self._waiting[0]
-            patience_ns = _seconds(self.config.transform_wait_s)
-            waited = now_ns is None or abs(now_ns - image.stamp_ns) >= patience_ns
-            if not waited and not self._is_located(image):
-                return
-            self._waiting.popleft()
+        while waiting := self.room.images.next(lambda image: self.is_ready(image, now_ns)):
+            image = waiting.open()
             yield image, self.process(image)
+
+    def is_ready(self, image: WaitingImage, now_ns: int | None) -> bool:
+        """Whether the transform of an image's stamp is there, or it has waited long enough.
+
+        Args:
+            image: The image.
+            now_ns: On the clock of `image.since_ns`; None means that nothing more will come.
+        """
+        if now_ns is None or abs(now_ns - image.since_ns) >= _ns(self.config.transform_wait_s):
+            return True
+        frame = self.config.camera_frame or image.frame_id
+        return self.transforms.can_lookup(self.config.fixed_frame, frame, image.stamp_ns)
 
     def process(self, image: CameraImage) -> FrameResult:
         """The way of one frame, now.
@@ -133,9 +171,7 @@ class Pipeline:
             still reported, and no pose is given that is not known.
         """
         self._notes = []
-        if image.stamp_ns < self._last_stamp_ns:
-            self._jump_back(image)
-        self._last_stamp_ns = image.stamp_ns
+        self._follow_clock(image.stamp_ns)
 
         fixed_from_camera, is_located = self._locate_camera(image)
         scan, laser_pose = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
@@ -152,11 +188,12 @@ class Pipeline:
             scan,
             laser_pose,
             self.config,
-            sustain=scan is not self._sustained_by,
+            sustain=scan is not None and scan.stamp_ns > self._sustained_ns,
             background=self._background if self.config.background_after_s > 0.0 else None,
             people=people,
         )
-        self._sustained_by = scan
+        if scan is not None:
+            self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
         if self.config.appearance_weight and hands.raised.any():
             measurements = _with_clothes(measurements, image, hands)
         robot_xy_m = fixed_from_camera.planar[:2]
@@ -194,8 +231,7 @@ class Pipeline:
 
         Only parameters that are `live` take effect (`tracker.config.parameter_extra`).
         """
-        if config.processing_rate != self.config.processing_rate:
-            self._limiter.set_rate(config.processing_rate)
+        self.room.images.set_rate(config.processing_rate)
         if _configured_camera(config) != _configured_camera(self.config):
             self.camera = _configured_camera(config)
         self.config = self.tracker.config = config
@@ -203,41 +239,37 @@ class Pipeline:
 
     def reset(self) -> None:
         """Forget people, furniture, scans, moving transforms and waiting images."""
+        self._forget()
+        self.room.reset()
+        self._last_stamp_ns = None
+
+    def _forget(self) -> None:
         self.tracker.reset()
         self._background.reset()
         self.detector.reset()
-        self.transforms.clear()
-        self._limiter.reset()
-        self._scans.clear()
-        self._waiting.clear()
         self._camera_pose = None
-        self._last_stamp_ns = -1
+        self._sustained_ns = -1
 
     def _note(self, kind: NoteKind, text: str) -> None:
         self._notes.append(Note(kind, text))
 
-    def _jump_back(self, image: CameraImage) -> None:
-        back_s = (self._last_stamp_ns - image.stamp_ns) / 1e9
+    def _follow_clock(self, stamp_ns: int) -> None:
+        """Forget everybody where the stamps step back, or so far ahead that nobody stays known.
+
+        The gate lets no single odd stamp through: a step that gets here lasts.
+        """
+        last_ns, self._last_stamp_ns = self._last_stamp_ns, stamp_ns
+        if last_ns is None or 0 <= stamp_ns - last_ns <= _FORGOTTEN_NS:
+            return
+        step_s, way = abs(stamp_ns - last_ns) / 1e9, "back" if stamp_ns < last_ns else "ahead"
         self._note(
-            NoteKind.CLOCK_JUMPED, f"stamps jumped back by {back_s:.3f} s: tracks were reset"
+            NoteKind.CLOCK_JUMPED, f"stamps jumped {way} by {step_s:.3f} s: tracks were reset"
         )
-        self.tracker.reset()
-        self._background.reset()
-        self.detector.reset()
-        self.transforms.forget_after(image.stamp_ns)
-        self._scans = deque(
-            (scan for scan in self._scans if scan.stamp_ns <= image.stamp_ns), maxlen=_SCANS_KEPT
-        )
-        self._sustained_by = None
-        self._camera_pose = None
+        self._forget()
+        self.room.forget_scans_after(stamp_ns)
 
     def _camera_frame(self, image: CameraImage) -> str:
         return self.config.camera_frame or image.frame_id
-
-    def _is_located(self, image: CameraImage) -> bool:
-        return self.transforms.can_lookup(
-            self.config.fixed_frame, self._camera_frame(image), image.stamp_ns
-        )
 
     def _locate_camera(self, image: CameraImage) -> tuple[RigidTransform, bool]:
         """The camera in the fixed frame, and whether that is known.
@@ -286,30 +318,48 @@ class Pipeline:
     def _nearest_scan(
         self, stamp_ns: int, fixed_from_camera: RigidTransform, is_located: bool
     ) -> tuple[Scan | None, FloatArray | None]:
-        """The scan nearest to a stamp, and its laser in the fixed frame at its own stamp."""
-        if not self._scans:
+        """The nearest scan that can be located, and its laser in the fixed frame at its stamp.
+
+        Transforms come later than scans: the nearest scan may lie beyond the last of them, where
+        the one before serves as well.
+        """
+        scans = self.room.scans_by_age(stamp_ns)
+        if not scans:
             self._note(NoteKind.NO_SCAN, "no scan has come")
             return None, None
-        scan = min(self._scans, key=lambda candidate: abs(candidate.stamp_ns - stamp_ns))
-        age_s = abs(scan.stamp_ns - stamp_ns) / 1e9
-        if age_s > self.config.scan_max_age_s:
-            limit_s = self.config.scan_max_age_s
+        limit_s = self.config.scan_max_age_s
+        timely = [scan for scan in scans if abs(scan.stamp_ns - stamp_ns) <= _ns(limit_s)]
+        if not timely:
+            off_s = (scans[0].stamp_ns - stamp_ns) / 1e9
+            where = f"{abs(off_s):.3f} s {'later' if off_s > 0 else 'earlier'}"
             self._note(
-                NoteKind.SCAN_TOO_OLD,
-                f"no scan within {limit_s:g} s: the nearest is {age_s:.3f} s off",
+                NoteKind.SCAN_TOO_OLD, f"no scan within {limit_s:g} s: the nearest is {where}"
             )
             return None, None
-        if len(scan.ranges_m) == 0:
-            self._note(NoteKind.SCAN_WITHOUT_BEAMS, "the scan has no beams")
+        usable = [scan for scan in timely if len(scan.ranges_m) >= _BEAMS_MIN]
+        if not usable:
+            beams = len(timely[0].ranges_m)
+            self._note(
+                NoteKind.SCAN_WITHOUT_BEAMS,
+                f"the scan has {beams} beams; {_BEAMS_MIN} or more are needed",
+            )
             return None, None
-        if not is_located:
-            return scan, self._laser_beside_camera(scan, fixed_from_camera).planar
-        try:
-            laser = self.transforms.lookup(self.config.fixed_frame, scan.frame_id, scan.stamp_ns)
-        except TransformError as error:
-            self._note(NoteKind.SCAN_NOT_LOCATED, f"scan unused: {error}")
-            return None, None
-        return scan, laser.planar
+        if not usable[0].valid.any():
+            self._note(NoteKind.SCAN_WITHOUT_RETURNS, "no beam of the scan has a return")
+        if not is_located or self.config.fixed_frame == self.config.camera_frame:
+            return usable[0], self._laser_beside_camera(usable[0], fixed_from_camera).planar
+        failures = []
+        for scan in usable:
+            try:
+                laser = self.transforms.lookup(
+                    self.config.fixed_frame, scan.frame_id, scan.stamp_ns
+                )
+            except TransformError as error:
+                failures.append(error)
+            else:
+                return scan, laser.planar
+        self._note(NoteKind.SCAN_NOT_LOCATED, f"scan unused: {failures[0]}")
+        return None, None
 
     def _laser_beside_camera(
         self, scan: Scan, fixed_from_camera: RigidTransform
@@ -341,5 +391,5 @@ def _configured_camera(config: Config) -> CameraModel:
     return CameraModel(config.camera_fx, config.camera_fy, config.camera_cx, config.camera_cy)
 
 
-def _seconds(value_s: float) -> int:
+def _ns(value_s: float) -> int:
     return round(value_s * 1e9)

@@ -3,38 +3,71 @@
 from __future__ import annotations
 
 from tracker.containers import FrameResult
+from tracker.notes import NoteKind
+from tracker.scan_use import ScanUse
+
+#: A scanner that serves fewer images than this share is worth a word.
+_SERVED_SHARE = 0.5
 
 
 class Problems:
-    """Counts faults by kind; memory does not grow with their number.
-
-    Attributes:
-        remarks: What is worth saying and is no fault, each once.
-    """
+    """Counts faults and remarks by kind; memory does not grow with their number."""
 
     def __init__(self) -> None:
-        self.remarks: list[str] = []
+        self._faults = _Kinds()
+        self._remarks = _Kinds()
+        self._scan_use = ScanUse()
+
+    def add(self, kind: str, text: str) -> None:
+        """Note a fault; of each kind the first text is kept."""
+        self._faults.add(kind, text)
+
+    def remark(self, text: str, kind: str | None = None) -> None:
+        """Note what is no fault; by default each text is a kind of its own."""
+        self._remarks.add(kind or text, text)
+
+    def note_frame(self, result: FrameResult) -> None:
+        """Pick the faults from what the pipeline noted about one image."""
+        self._scan_use.add(result)
+        for note in result.notes:
+            if note.kind.is_fault:
+                self.add(note.kind.value, f"{note} (image at {result.stamp_ns / 1e9:.3f} s)")
+            elif note.kind is NoteKind.LASER_MOUNTING_UNKNOWN:
+                self._remarks.add(note.kind.value, note.text)
+
+    def note_scan_use(self) -> None:
+        """Say whether the scans that came were of any use."""
+        use = self._scan_use
+        if use.frames and not use.used:
+            self.add(
+                "scans unused", f"no scan was used in any of {use.frames} images: {use.reason()}"
+            )
+        elif use.used < _SERVED_SHARE * use.frames:
+            self.remark(
+                f"a scan was used in {use.used} of {use.frames} images only: {use.reason()}"
+            )
+
+    def lines(self) -> tuple[str, ...]:
+        """One line for each kind of fault."""
+        return self._faults.lines()
+
+    def remarks(self) -> tuple[str, ...]:
+        """One line for each kind of remark."""
+        return self._remarks.lines()
+
+
+class _Kinds:
+    """The first text of each kind, and how many came."""
+
+    def __init__(self) -> None:
         self._first: dict[str, str] = {}
         self._count: dict[str, int] = {}
 
     def add(self, kind: str, text: str) -> None:
-        """Note a fault; of each kind the first text is kept."""
         self._first.setdefault(kind, text)
         self._count[kind] = self._count.get(kind, 0) + 1
 
-    def remark(self, text: str) -> None:
-        """Note what is no fault."""
-        if text not in self.remarks:
-            self.remarks.append(text)
-
-    def note_frame(self, result: FrameResult) -> None:
-        """Pick the faults from what the pipeline noted about one image."""
-        for note in result.notes:
-            if note.kind.is_fault:
-                self.add(note.kind.value, f"{note} (image at {result.stamp_ns / 1e9:.3f} s)")
-
     def lines(self) -> tuple[str, ...]:
-        """One line for each kind of fault."""
         return tuple(
             text if self._count[kind] == 1 else f"{text} ... and {self._count[kind] - 1} more"
             for kind, text in self._first.items()

@@ -11,12 +11,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Scan, Truth
-from tracker.errors import RecordingError, TransformError
+from tracker.errors import ClockError, RecordingError, TransformError
 from tracker.evaluation.episode_report import EpisodeReport
 from tracker.evaluation.episodes import EpisodeEvaluation
+from tracker.messages import Event
 from tracker.perception.detector import HandDetector
 from tracker.pipeline import Pipeline
 from tracker.problems import Problems
@@ -26,7 +26,7 @@ from tracker.report.history import History
 from tracker.report.overview import draw_overview
 from tracker.report.summary import summarize, write_summary
 from tracker.tracking.innovations import Watch
-from tracker.transforms import StampedTransform
+from tracker.waiting import Verdict
 
 #: Told what share of the recording is done, from 0 to 1, and how many images were processed.
 Progress = Callable[[float, int], None]
@@ -122,18 +122,19 @@ def replay(
                         continue
                     frames_seen += isinstance(event, CameraImage)
                     outputs.copy(log_ns, event)
-                    now_ns = _feed(pipeline, event, problems)
-                    if now_ns is not None:
-                        advance(now_ns)
+                    _feed(pipeline, event, log_ns, problems)
+                    advance(log_ns)
                     if progress is not None and isinstance(event, (CameraImage, Scan)):
                         progress(recording.share(log_ns), history.frames_processed)
             except RecordingError as error:  # breaks off: what came before it counts
                 problems.add("broken recording", str(error))
             advance()
         _note_missing(pipeline, recording, history, problems, config)
+        if recording.has_scans:
+            problems.note_scan_use()
         for reason in recording.skipped_lines():
             problems.add("skipped", reason)
-        remarks = (*recording.notes, *problems.remarks)
+        remarks = (*recording.notes, *problems.remarks())
     episodes = evaluation.report() if has_truth else None
     summary = summarize(history, frames_seen=frames_seen, evaluation=episodes) | {
         "source": str(source),
@@ -148,23 +149,19 @@ def replay(
     return Replay(history, summary, episodes, problems.lines(), remarks, files)
 
 
-def _feed(pipeline: Pipeline, event: object, problems: Problems) -> int | None:
-    """Push one event into the pipeline; its stamp is the data's time now, if it has one."""
-    if isinstance(event, CameraImage):
-        pipeline.add_image(event)
-        return event.stamp_ns
-    if isinstance(event, Scan):
-        pipeline.add_scan(event)
-        return event.stamp_ns
-    if isinstance(event, StampedTransform):
-        try:
-            pipeline.add_transform(event)
-        except TransformError as error:
-            problems.add("unusable transform", str(error))
-        return None if event.is_static else event.stamp_ns
-    if isinstance(event, CameraModel):
-        pipeline.set_camera(event)
-    return None
+def _feed(pipeline: Pipeline, event: Event, log_ns: int, problems: Problems) -> None:
+    """Push one event into the pipeline, and keep what is wrong with it."""
+    try:
+        verdict = pipeline.add(event, log_ns)
+    except (TransformError, ClockError) as error:
+        problems.add("unusable transform", str(error))
+        return
+    if verdict is not None and verdict.is_refused and isinstance(event, CameraImage):
+        text = f"image left out: its stamp {event.stamp_ns / 1e9:.3f} s is {verdict.value}"
+        if verdict is Verdict.LATE:
+            problems.remark(text, kind=verdict.name)
+        else:
+            problems.add(verdict.name, text)
 
 
 def _note_missing(

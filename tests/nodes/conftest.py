@@ -115,7 +115,7 @@ class Wire:
 
     def settle(self):
         """Wait until the worker has done with every image that waits for nothing any more."""
-        self.until(lambda: self.core._inbox.images_waiting == 0)
+        self.until(lambda: self.core.images_waiting == 0)
         for _ in range(3):  # a barrier may fall between two images of one batch
             done = threading.Event()
             self.core._inbox.order(done.set)

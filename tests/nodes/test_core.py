@@ -3,6 +3,7 @@ import threading
 import numpy as np
 import pytest
 
+from nodes.diagnostics import WARN
 from nodes.topics import Input, Output
 from tracker import Config
 from tracker.geometry import RigidTransform
@@ -94,7 +95,7 @@ def pile_up(wire, count):
     wire.detector.may_run.clear()
     stamps = [START_NS + i * PERIOD_NS for i in range(count)]
     wire.image(stamps[0])
-    wire.until(lambda: wire.core._inbox.images_waiting == 0)
+    wire.until(lambda: wire.core.images_waiting == 0)
     for stamp_ns in stamps[1:]:
         wire.image(stamp_ns)
     return stamps
@@ -122,14 +123,13 @@ def test_nothing_grows_while_the_worker_is_held_up(wire):
     wire.base(START_NS + 1)
     wire.detector.may_run.clear()
     wire.image(START_NS)
-    wire.until(lambda: wire.core._inbox.images_waiting == 0)
+    wire.until(lambda: wire.core.images_waiting == 0)
     for number in range(1, 5000):
         wire.image(START_NS + number * PERIOD_NS)
         wire.scan(START_NS + number)
         wire.base(START_NS + number)
-    inbox = wire.core._inbox
-    assert inbox.images_waiting <= 16
-    assert sum(len(kept) for kept in inbox._messages.values()) <= 2541
+    assert wire.core.images_waiting <= 16
+    assert sum(len(kept) for kept in wire.core._inbox._messages.values()) <= 2541
 
 
 def test_callbacks_never_wait_for_the_worker(wire):
@@ -137,7 +137,7 @@ def test_callbacks_never_wait_for_the_worker(wire):
     wire.base(START_NS - 1)
     wire.base(START_NS + 1)
     wire.image(START_NS)
-    wire.until(lambda: wire.core._inbox.images_waiting == 0)
+    wire.until(lambda: wire.core.images_waiting == 0)
 
     def everything():
         wire.image(START_NS + PERIOD_NS)
@@ -313,3 +313,19 @@ def test_broken_transforms_are_counted_and_the_good_ones_used(wire):
     assert wire.diagnose()["transforms"].values["malformed"] == "2"
     assert wire.diagnose()["transforms"].message != "stale"
     assert len(wire.detector.stamps_ns) == 2
+
+
+def test_a_scanner_of_which_nothing_is_used_is_told_with_its_reason(wire):
+    for number in range(40):
+        stamp_ns = START_NS + number * FRAME_NS
+        wire.scan(stamp_ns + 800_000_000)  # another clock
+        wire.base(stamp_ns - 1_000_000)
+        wire.base(stamp_ns + 1_000_000)
+        wire.image(stamp_ns)
+        wire.settle()
+    status = wire.diagnose()["scan"]
+    assert status.level == WARN
+    assert "no scan was used in the last 14 images" in status.message
+    assert "0.8" in status.message
+    play(wire, 4, START_NS + 40 * FRAME_NS)
+    assert wire.diagnose()["scan"].message == "coming"

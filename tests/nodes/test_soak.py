@@ -52,7 +52,7 @@ def test_a_long_run_leaves_no_trace(wire):
         wire.core.receive(Input.IMAGES, with_stamp(image, 4, stamp_ns))
         if number % 3 == 0:
             wire.scan(stamp_ns)
-            wire.until(lambda: wire.core._inbox.images_waiting == 0)
+            wire.until(lambda: wire.core.images_waiting == 0)
         if number % 15 == 0:
             wire.core.diagnose()
         if number % 450 == 0:  # somebody breaks something now and then

@@ -13,11 +13,12 @@ SOURCES = sorted((ROOT / "tracker").rglob("*.py"))
 
 #: From the ground up. A file may import its own room and the floors below, never its neighbors.
 FLOORS = [
-    {"errors", "closing"},
+    {"errors", "closing", "notes"},
     {"containers", "config"},
     {"geometry", "config_file"},
     {"camera", "transforms"},
-    {"perception", "ranging", "tracking", "messages", "rate_limiter", "problems"},
+    {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
+    {"problems"},
     {"pipeline", "recording"},
     {"simulation"},
     {"evaluation"},

@@ -1,4 +1,5 @@
 import csv
+import dataclasses
 import json
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from tracker.errors import RecordingError
 from tracker.messages import CameraInfo
 from tracker.recording import RecordingWriter, open_recording
 from tracker.replay import replay
+from tracker.transforms import StampedTransform
 
 DATA = Path(__file__).parents[2] / "../shared/data"
 START_NS = 1_700_000_000_000_000_000
@@ -104,14 +106,46 @@ def test_camera_info_of_the_recording_is_used(tmp_path, write_bag, hand_ahead):
     assert result.history.frames_processed == 20
 
 
-def test_stamps_that_jump_back_are_a_problem_and_the_rest_is_replayed(
-    tmp_path, write_bag, hand_ahead
-):
+def test_one_stray_stamp_is_a_problem_and_forgets_nobody(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap", jump=10)
     result = replay(bag, tmp_path / "out", detector=hand_ahead)
-    assert "jumped back" in result.problems[0]
-    assert "1699999996.0" in result.problems[0]
-    assert result.history.frames_processed == 20
+    (problem,) = result.problems
+    assert "its stamp 1699999996.0" in problem
+    assert result.history.frames_processed == 19
+    assert list(result.history.people) == [1]
+
+
+def relogged(bag, path, change):
+    """The recording with the events that `change` makes of each log time and event."""
+    with open_recording(bag) as recording, RecordingWriter(path) as writer:
+        topics = {CameraImage: "/image_raw", Scan: "/scan", StampedTransform: "/tf_static"}
+        for log_ns, event in recording.events():
+            for changed in change(log_ns, event):
+                writer.write(topics[type(event)], log_ns, changed)
+    return path
+
+
+def test_stamps_that_stay_back_are_a_problem_and_the_rest_is_replayed(
+    tmp_path, write_bag, hand_ahead
+):
+    def back(log_ns, event):
+        is_late = log_ns >= START_NS + 1_000_000_000 and not isinstance(event, StampedTransform)
+        yield dataclasses.replace(event, stamp_ns=event.stamp_ns - 5 * 10**9) if is_late else event
+
+    bag = relogged(write_bag(tmp_path / "in.mcap"), tmp_path / "back.mcap", back)
+    result = replay(bag, tmp_path / "out", detector=hand_ahead)
+    assert any("jumped back by 4.800 s" in problem for problem in result.problems)
+    assert result.history.frames_processed == 19
+
+
+def test_a_scanner_of_which_nothing_is_used_is_a_problem(tmp_path, write_bag, hand_ahead):
+    def renamed(log_ns, event):
+        yield dataclasses.replace(event, frame_id="lidar") if isinstance(event, Scan) else event
+
+    bag = relogged(write_bag(tmp_path / "in.mcap"), tmp_path / "other.mcap", renamed)
+    (problem,) = replay(bag, tmp_path / "out", detector=hand_ahead).problems
+    assert problem.startswith("no scan was used in any of 20 images")
+    assert "'lidar'" in problem
 
 
 def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path, write_bag, hand_ahead):

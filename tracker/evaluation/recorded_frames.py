@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
-from tracker.camera import CameraModel
-from tracker.containers import CameraImage, FrameResult, Scan
-from tracker.errors import RecordingError, TransformError
-from tracker.messages import Event
+from tracker.containers import FrameResult
+from tracker.errors import ClockError, RecordingError, TransformError
 from tracker.pipeline import Pipeline
 from tracker.recording import Topics, open_recording
-from tracker.transforms import StampedTransform
 
 
 def recorded_frames(
@@ -45,11 +43,11 @@ def recorded_frames(
         recording.require_images()
         try:
             for log_ns, event in recording.events():
-                now_ns = _feed(pipeline, event)
-                if now_ns is not None:
-                    for _, result in pipeline.advance(now_ns):
-                        images += 1
-                        yield result
+                with suppress(TransformError, ClockError):  # `replay` is where problems are told
+                    pipeline.add(event, log_ns)
+                for _, result in pipeline.advance(log_ns):
+                    images += 1
+                    yield result
                 progress(recording.share(log_ns), images)
         except RecordingError:
             if not images:
@@ -60,21 +58,3 @@ def recorded_frames(
     progress(1.0, images)
     if not images:
         raise RecordingError(f"{source}: holds no image that could be processed.")
-
-
-def _feed(pipeline: Pipeline, event: Event) -> int | None:
-    """Push one event into the pipeline; its stamp is the data's time now, if it has one."""
-    if isinstance(event, CameraModel):
-        pipeline.set_camera(event)
-        return None
-    if isinstance(event, StampedTransform):
-        try:
-            pipeline.add_transform(event)
-        except TransformError:
-            return None  # an unusable transform is none; `replay` is where problems are told
-        return None if event.is_static else event.stamp_ns
-    if isinstance(event, Scan):
-        pipeline.add_scan(event)
-    elif isinstance(event, CameraImage):
-        pipeline.add_image(event)
-    return event.stamp_ns

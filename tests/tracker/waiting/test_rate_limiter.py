@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tracker.rate_limiter import RateLimiter
+from tracker.waiting.rate_limiter import RateLimiter
 
 
 def mean_rate(rate_hz, stamps_ns):

@@ -35,9 +35,11 @@ class RateLimiter:
         return True
 
     def set_rate(self, rate_hz: float) -> None:
-        """Change the rate, from the next image on."""
-        self._period_ns = 1e9 / rate_hz
-        self.reset()
+        """Change the rate, from the next image on, which is admitted if the rate is another."""
+        period_ns = 1e9 / rate_hz
+        if period_ns != self._period_ns:
+            self._period_ns = period_ns
+            self.reset()
 
     def reset(self) -> None:
         """Forget the past: the next image is admitted."""

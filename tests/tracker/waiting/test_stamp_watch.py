@@ -1,12 +1,12 @@
 import pytest
 
-from nodes.stamp_watch import StampWatch, Step
+from tracker.waiting.stamp_watch import StampWatch, Step
 
 S = 1_000_000_000
 
 
-def judged(*stamps_s, back_s=0.0, ahead_s=10.0):
-    watch = StampWatch(int(back_s * S), int(ahead_s * S))
+def judged(*stamps_s, late_s=0.0, ahead_s=10.0):
+    watch = StampWatch(int(late_s * S), int(ahead_s * S))
     return [watch.judge(int(stamp_s * S)) for stamp_s in stamps_s]
 
 
@@ -32,8 +32,15 @@ def test_odd_stamps_that_do_not_agree_are_never_believed():
     assert judged(100, 7.0, 3.0, 80.0, 1.0, 100.1)[1:] == [Step.ODD] * 4 + [Step.ONWARD]
 
 
-def test_messages_may_come_out_of_order_within_the_limit():
-    assert judged(100, 99.5, 100.2, back_s=1.0) == [Step.ONWARD] * 3
+def test_messages_out_of_order_are_late_and_however_many_make_no_new_time():
+    steps = judged(100, 99.5, 99.6, 99.7, 100.2, late_s=1.0)
+    assert steps == [Step.ONWARD, Step.LATE, Step.LATE, Step.LATE, Step.ONWARD]
+
+
+def test_a_clock_that_was_set_back_a_little_for_good_is_a_jump_in_the_end():
+    steps = judged(100, *(99.2 + number * 1e-3 for number in range(200)), late_s=1.0)
+    assert steps.count(Step.JUMPED_BACK) == 1
+    assert steps[-1] is Step.ONWARD
 
 
 def test_after_a_reset_any_stamp_is_believed():
