@@ -19,7 +19,7 @@ from nodes.outputs import HasSubscribers, Publish, publish_answer, publish_nobod
 from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
 from nodes.work_budget import WorkBudget
 from tracker.config import Config
-from tracker.containers import CameraImage, FrameResult
+from tracker.containers import CameraImage, FrameResult, Scan
 from tracker.errors import TrackerError
 from tracker.messages import Encoded, decode
 from tracker.notes import NoteKind
@@ -256,6 +256,8 @@ class NodeCore:
             self.refuse(item, str(error))
             return
         for event in events:
+            if isinstance(event, Scan):
+                self._diagnostics.scan_stamped(event.stamp_ns, self._now_ns())
             try:
                 self._pipeline.add(event)
             except TrackerError as error:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from nodes.topics import DIAGNOSTICS_TYPE, Input
+from tracker.clock_offset import ClockOffset
 from tracker.config import NODE_NAME, Config
 from tracker.containers import FrameResult, PerceptionWork
 from tracker.messages import Encoded
@@ -30,6 +31,8 @@ SILENT_S = 0.9
 _LATENCIES, _REPORTS = 200, 10
 #: A scanner that serves none of so many images in a row is worth a warning.
 _UNUSED_IMAGES = 10
+#: Stamps ahead of their arrival by more than this come from a clock that is wrong.
+_AHEAD_S = 0.25
 #: Stamps farther than this from the node's clock are of another time, not late.
 _OTHER_TIME_S = 10.0
 
@@ -88,6 +91,7 @@ class Diagnostics:
         self._reports = deque[tuple[int, dict[str, int]]](maxlen=_REPORTS + 1)
         self._last: FrameResult | None = None
         self._scan_use = ScanUse()
+        self._scan_clock = ClockOffset()
         self._processed = 0
         self._last_frame_ns: int | None = None
         self._located_ns: int | None = None
@@ -98,6 +102,11 @@ class Diagnostics:
         with self._lock:
             self._inputs[item].count += 1
             self._inputs[item].last_ns = self._steady_ns()
+
+    def scan_stamped(self, stamp_ns: int, now_ns: int) -> None:
+        """A scan with this stamp has come, at this time of the node's clock."""
+        with self._lock:
+            self._scan_clock.add(stamp_ns, now_ns)
 
     def malformed(self, item: Input, text: str) -> None:
         """What has come makes no sense."""
@@ -193,6 +202,9 @@ class Diagnostics:
         unused = self._scan_use.frames
         if item is Input.SCAN and unused >= _UNUSED_IMAGES:
             return WARN, f"no scan was used in the last {unused} images: {self._scan_use.reason()}"
+        ahead_s = self._scan_clock.ahead_s()
+        if item is Input.SCAN and _AHEAD_S < ahead_s < _OTHER_TIME_S:
+            return WARN, f"stamps are {ahead_s:.3f} s ahead of the node's clock: other clocks?"
         return OK, "coming"
 
     def _judge_connection(self, otherwise: str) -> tuple[int, str]:

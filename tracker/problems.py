@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tracker.containers import FrameResult
+from tracker.clock_offset import ClockOffset
+from tracker.containers import CameraImage, FrameResult, Scan
 from tracker.notes import NoteKind
 from tracker.scan_use import ScanUse
 
@@ -17,6 +18,7 @@ class Problems:
         self._faults = _Kinds()
         self._remarks = _Kinds()
         self._scan_use = ScanUse()
+        self._image_clock, self._scan_clock = ClockOffset(), ClockOffset()
 
     def add(self, kind: str, text: str) -> None:
         """Note a fault; of each kind the first text is kept."""
@@ -25,6 +27,13 @@ class Problems:
     def remark(self, text: str, kind: str | None = None) -> None:
         """Note what is no fault; by default each text is a kind of its own."""
         self._remarks.add(kind or text, text)
+
+    def note_arrival(self, event: object, arrived_ns: int) -> None:
+        """Compare a message's stamp with the time at which it was recorded."""
+        if isinstance(event, CameraImage):
+            self._image_clock.add(event.stamp_ns, arrived_ns)
+        elif isinstance(event, Scan):
+            self._scan_clock.add(event.stamp_ns, arrived_ns)
 
     def note_frame(self, result: FrameResult) -> None:
         """Pick the faults from what the pipeline noted about one image."""
@@ -35,8 +44,20 @@ class Problems:
             elif note.kind is NoteKind.LASER_MOUNTING_UNKNOWN:
                 self._remarks.add(note.kind.value, note.text)
 
-    def note_scan_use(self) -> None:
-        """Say whether the scans that came were of any use."""
+    def note_scan_use(self, max_age_s: float) -> None:
+        """Say whether the scans that came were of any use.
+
+        Args:
+            max_age_s: `scan_max_age_s`: stamps that are farther off make a scan useless.
+        """
+        ahead_s = self._scan_clock.ahead_s() - max(self._image_clock.ahead_s(), 0.0)
+        if ahead_s > max_age_s:
+            self.add(
+                "scan clock ahead",
+                f"the scans' stamps lie {ahead_s:.3f} s after their recording, the images' do "
+                "not: the clocks of scanner and camera disagree, and scans are used for images of "
+                "another time. Synchronize the clocks, or replay with --stamps log.",
+            )
         use = self._scan_use
         if use.frames and not use.used:
             self.add(

@@ -131,7 +131,7 @@ def replay(
             advance()
         _note_missing(pipeline, recording, history, problems, config)
         if recording.has_scans:
-            problems.note_scan_use()
+            problems.note_scan_use(config.scan_max_age_s)
         for reason in recording.skipped_lines():
             problems.add("skipped", reason)
         remarks = (*recording.notes, *problems.remarks())
@@ -151,6 +151,7 @@ def replay(
 
 def _feed(pipeline: Pipeline, event: Event, log_ns: int, problems: Problems) -> None:
     """Push one event into the pipeline, and keep what is wrong with it."""
+    problems.note_arrival(event, log_ns)
     try:
         verdict = pipeline.add(event, log_ns)
     except (TransformError, ClockError) as error:

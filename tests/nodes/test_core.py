@@ -318,7 +318,7 @@ def test_broken_transforms_are_counted_and_the_good_ones_used(wire):
 def test_a_scanner_of_which_nothing_is_used_is_told_with_its_reason(wire):
     for number in range(40):
         stamp_ns = START_NS + number * FRAME_NS
-        wire.scan(stamp_ns + 800_000_000)  # another clock
+        wire.scan(stamp_ns - 800_000_000)  # another clock
         wire.base(stamp_ns - 1_000_000)
         wire.base(stamp_ns + 1_000_000)
         wire.image(stamp_ns)

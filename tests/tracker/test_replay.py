@@ -148,6 +148,27 @@ def test_a_scanner_of_which_nothing_is_used_is_a_problem(tmp_path, write_bag, ha
     assert "'lidar'" in problem
 
 
+def test_a_scanner_whose_clock_runs_ahead_is_a_problem(tmp_path, write_bag, hand_ahead):
+    def ahead(log_ns, event):
+        is_scan = isinstance(event, Scan)
+        yield dataclasses.replace(event, stamp_ns=event.stamp_ns + 5 * 10**8) if is_scan else event
+
+    bag = relogged(write_bag(tmp_path / "in.mcap"), tmp_path / "ahead.mcap", ahead)
+    (problem,) = replay(bag, tmp_path / "out", detector=hand_ahead).problems
+    assert "stamps lie 0.500 s after their recording" in problem
+
+
+def test_a_camera_that_is_half_a_second_late_is_no_problem(tmp_path, write_bag, hand_ahead):
+    def late(log_ns, event):
+        is_image = isinstance(event, CameraImage)
+        yield (
+            dataclasses.replace(event, stamp_ns=event.stamp_ns - 5 * 10**8) if is_image else event
+        )
+
+    bag = relogged(write_bag(tmp_path / "in.mcap"), tmp_path / "late.mcap", late)
+    assert replay(bag, tmp_path / "out", detector=hand_ahead).problems == ()
+
+
 def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap", links=())
     result = replay(bag, tmp_path / "out", detector=hand_ahead)
