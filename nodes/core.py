@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from nodes.diagnostics import WARN, Diagnostics, encode_statuses
 from nodes.fault_log import FaultLog
 from nodes.header_peek import peek_header
+from nodes.image_silence import patience_s
 from nodes.inbox import Inbox
 from nodes.outputs import HasSubscribers, Publish, publish_answer, publish_nobody, publish_views
 from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
@@ -196,6 +197,7 @@ class NodeCore:
                 if status.level >= WARN and status.is_news:
                     self._faults.add(status.name, status.message)
         self._publish(Output.DIAGNOSTICS, encode_statuses(statuses, max(self._now_ns(), 0)))
+        self._inbox.wake()  # silence brings nothing that would
 
     def _receive_image(self, message: Encoded) -> None:
         if not self._is_enabled:
@@ -225,6 +227,7 @@ class NodeCore:
             was_busy = bool(images)
             if was_busy:
                 self._inbox.wake()
+            self._mind_silence()
         if self._last is not None and self._last.hand_raised:
             self._forget_everybody()
 
@@ -309,6 +312,18 @@ class NodeCore:
         self._images.reset()
         self._pipeline.tracker.reset()
         self._pipeline.detector.reset()
+        self._take_back()
+
+    def _mind_silence(self) -> None:
+        """Report nobody on the word of a camera that has died; the tracks wait for it."""
+        silence_s = self._diagnostics.silence_s
+        if self._last is None or len(self._images) or silence_s is None:
+            return
+        if silence_s >= patience_s(self._config):
+            self._pipeline.tracker.lower_hands()
+            self._take_back()
+
+    def _take_back(self) -> None:
         stamp_ns = self._last.stamp_ns if self._last is not None else 0
         self._last = None
         publish_nobody(stamp_ns, self._config, self._publish, self._has_subscribers)

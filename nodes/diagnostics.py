@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from nodes.image_silence import patience_s
 from nodes.topics import DIAGNOSTICS_TYPE, Input
 from tracker.clock_offset import ClockOffset
 from tracker.config import NODE_NAME, Config
@@ -141,6 +142,11 @@ class Diagnostics:
         last_ns = self._inputs[Input.TRANSFORMS].last_ns
         return last_ns is not None and self._since(last_ns) < SILENT_S
 
+    @property
+    def silence_s(self) -> float | None:
+        """How long ago an image was processed; None before the first."""
+        return None if self._last_frame_ns is None else self._since(self._last_frame_ns)
+
     def report(
         self, config: Config, detector: str, *, is_enabled: bool, lost: int
     ) -> list[Status]:
@@ -160,7 +166,7 @@ class Diagnostics:
             return [
                 *(self._input_status(item) for item in _WATCHED),
                 self._processing_status(config, detector, is_enabled),
-                self._customers_status(),
+                self._customers_status(config, is_enabled),
             ]
 
     def _input_status(self, item: Input) -> Status:
@@ -248,9 +254,15 @@ class Diagnostics:
             values["latency_ms_p99"] = _milliseconds(latency, 99)
         return Status("processing", level, message, values)
 
-    def _customers_status(self) -> Status:
-        if self._last is None:
+    def _customers_status(self, config: Config, is_enabled: bool) -> Status:
+        silence_s = self.silence_s
+        if self._last is None or silence_s is None:
             return Status("customers", OK, "no image was processed yet")
+        if not is_enabled:
+            return Status("customers", OK, "nobody is reported: disabled")
+        if silence_s >= patience_s(config):
+            why = f"nobody is reported: no image was processed for {silence_s:.1f} s"
+            return Status("customers", WARN, why)
         tracks = self._last.tracks
         confirmed, raised = int(tracks.confirmed.sum()), int(tracks.raised.sum())
         chosen = tracks.selected_id

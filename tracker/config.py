@@ -504,6 +504,11 @@ class Config(BaseModel):
         "(`image_raw/compressed`).",
         group="node",
     )  # fmt: skip
+    image_silence_s: float = _parameter(
+        1.2, "After so long without a processed image a node reports nobody: no hand is up, no "
+        "tracks. A camera slower than one image a second needs more.",
+        unit="s", group="node", live=True, ge=0.1, le=3600.0,
+    )  # fmt: skip
 
     @model_validator(mode="after")
     def _bounds_agree(self) -> Config:

@@ -7,8 +7,8 @@ import pytest
 
 NODES = Path(__file__).parents[2] / "nodes"
 SHARED = (
-    "core", "diagnostics", "fault_log", "header_peek", "image_gate", "inbox", "outputs",
-    "parameters", "qos", "stamp_watch", "topics", "work_budget",
+    "core", "diagnostics", "fault_log", "header_peek", "image_silence", "inbox",
+    "outputs", "parameters", "qos", "topics", "work_budget",
 )  # fmt: skip
 WIRES = {
     "rclpy", "tf2_ros", "cyclonedds", "sensor_msgs", "std_msgs", "std_srvs", "geometry_msgs",

@@ -16,6 +16,7 @@ from tracker.tracking.innovations import Watch
 from tracker.tracking.motion import modes_of
 from tracker.tracking.people import People
 from tracker.tracking.selection import Selector
+from tracker.tracking.streaks import Streaks
 from tracker.tracking.view import View
 
 if TYPE_CHECKING:
@@ -86,6 +87,10 @@ class PersonTracker:
         self._people = self._nobody()
         self._stamp_ns = None
         self.selector.reset()
+
+    def lower_hands(self) -> None:
+        """Let every hand count as down until it is seen up again; identities stay."""
+        self._people = self._people.replace(streaks=Streaks.begin(len(self._people)))
 
     def step(
         self,

@@ -23,6 +23,10 @@ pytestmark = [pytest.mark.slow, pytest.mark.model]
 TRIGGER, SET_BOOL = "std_srvs/srv/Trigger", "std_srvs/srv/SetBool"
 
 
+#: The end of a recording is no dead camera.
+NO_SILENCE = ("-p", "image_silence_s:=60.0")
+
+
 def play_undisturbed(ear, start_node, play, *arguments):
     """Play until every image has come and the node lost none.
 
@@ -32,7 +36,7 @@ def play_undisturbed(ear, start_node, play, *arguments):
     Returns the rates by the stamps and by the player's clock.
     """
     for speed in (1.0, 1.0, 0.5, 0.25, 0.1):
-        node = start_node(*arguments)
+        node = start_node(*arguments, *NO_SILENCE)
         player = play("--rate", speed)
         assert player.wait(300.0) == 0, player.log()
         time.sleep(1.1)
@@ -120,6 +124,23 @@ def test_silence_shows_by_name_within_two_seconds(ear, start_node, play):
     stale = {"images": "stale", "scan": "missing", "transforms": "stale"}
     told_s = ear.until(lambda: stale.items() <= words().items())
     assert told_s - stopped_s < 2.0
+    assert node.poll() is None
+
+
+def test_a_camera_that_dies_with_a_hand_up_leaves_no_raised_hand(ear, start_node, play):
+    node = start_node()
+    player = play()
+    ear.until(lambda: ear.messages(Output.HAND_RAISED)[-1:] and
+              ear.messages(Output.HAND_RAISED)[-1].data, 60.0)  # fmt: skip
+    player.kill()
+    player.wait()
+    died_s = time.monotonic()
+    ear.until(lambda: not ear.messages(Output.HAND_RAISED)[-1].data)
+    took_s = time.monotonic() - died_s
+    print(f"taken back {took_s:.2f} s after the last image")
+    assert took_s < 2.0
+    ear.until(lambda: ear.statuses()["customers"].message.startswith("nobody is reported"))
+    assert ear.messages(Output.TRACKS)[-1].detections == []
     assert node.poll() is None
 
 

@@ -40,6 +40,10 @@ def assert_as_replay(ear, replayed, share=0.95):
     assert off_m.max() < 0.01
 
 
+#: The end of a recording is no dead camera.
+NO_SILENCE = ("-p", "image_silence_s:=60.0")
+
+
 def play_undisturbed(ear, start_node, play, *ros_arguments, loop=1):
     """Play until the node lost no image.
 
@@ -48,7 +52,7 @@ def play_undisturbed(ear, start_node, play, *ros_arguments, loop=1):
     Returns the node, and the rates by the stamps and by the player's clock.
     """
     for speed in (1.0, 1.0, 0.5, 0.25, 0.1):
-        node = start_node(*ros_arguments)
+        node = start_node(*ros_arguments, *NO_SILENCE)
         assert play("--loop", loop, "--rate", speed).wait(300.0) == 0
         time.sleep(1.1)
         status = ear.statuses()["processing"]
@@ -172,6 +176,20 @@ def test_silence_shows_by_name_within_two_seconds(ear, start_node, play):
     told = ear.until(lambda: stale.items() <= levels().items())
     print(f"stale inputs told after {told - stopped:.2f} s")
     assert told - stopped < 2.0
+
+
+def test_a_camera_that_dies_with_a_hand_up_leaves_no_raised_hand(ear, start_node, play):
+    start_node()
+    player = play()
+    ear.until(lambda: any(message.data for message in ear.messages(Output.HAND_RAISED)))
+    player.kill()
+    player.wait()
+    died = time.monotonic()
+    took_s = ear.until(lambda: not ear.messages(Output.HAND_RAISED)[-1].data) - died
+    print(f"taken back {took_s:.2f} s after the last image")
+    assert took_s < 2.0
+    ear.until(lambda: ear.statuses()["customers"].message.startswith("nobody is reported"))
+    assert ear.messages(Output.TRACKS)[-1].detections == []
 
 
 def test_transforms_that_stop_show_within_two_seconds(ear, start_node, play):

@@ -57,6 +57,19 @@ def test_a_lowered_hand_lowers_the_streak_and_not_existence():
     assert down.id.tolist() == up.id.tolist()
 
 
+def test_hands_that_are_lowered_from_outside_need_a_new_streak_and_keep_their_identity():
+    tracker = PersonTracker()
+    up = run(tracker, [raised_at((2, 1), (4, -1))] * 5)
+    tracker.lower_hands()
+    first = run(tracker, [raised_at((2, 1), (4, -1))], start=20)
+    assert not first.raised.any()
+    assert first.confirmed.all()
+    again = run(tracker, [raised_at((2, 1), (4, -1))], start=21)
+    assert again.raised.all()
+    assert again.id.tolist() == up.id.tolist()
+    assert again.selected_id == up.selected_id
+
+
 def test_the_same_hand_up_again_is_the_same_person():
     tracker = PersonTracker()
     run(tracker, [raised_at((2, 1))] * 5)
