@@ -95,6 +95,7 @@ class NodeCore:
         self._began_ns = steady_ns()
         self._is_enabled = True
         self._last: FrameResult | None = None
+        self._shown_in: str | None = None
         self._worker = threading.Thread(target=self._work, name="hand_detector", daemon=True)
         log("info", _greeting(config))
 
@@ -279,7 +280,7 @@ class NodeCore:
         except TrackerError as error:
             self.refuse(Input.IMAGES, str(error))
             return
-        self._last = result
+        self._last, self._shown_in = result, result.frame_id or self._shown_in
         publish_answer(result, self._publish)
         latency_s = (self._now_ns() - result.stamp_ns) / 1e9
         busy_s = (self._steady_ns() - began_ns) / 1e9
@@ -326,7 +327,7 @@ class NodeCore:
     def _take_back(self) -> None:
         stamp_ns = self._last.stamp_ns if self._last is not None else 0
         self._last = None
-        publish_nobody(stamp_ns, self._config, self._publish, self._has_subscribers)
+        publish_nobody(stamp_ns, self._shown_in, self._publish, self._has_subscribers)
 
     def _note_reset(self, reason: str) -> None:
         self._diagnostics.resets += 1

@@ -34,12 +34,12 @@ def publish_views(
 ) -> None:
     """Confirmed customers as detections and markers, and the debug image, for who listens.
 
-    All of them bear the image's own stamp.
+    All of them bear the image's own stamp. Nothing is said of places in a frame that is unknown.
     """
-    frame_id, confirmed = config.fixed_frame, result.tracks[result.tracks.confirmed]
-    if has_subscribers(Output.TRACKS):
+    frame_id, confirmed = result.frame_id, result.tracks[result.tracks.confirmed]
+    if frame_id is not None and has_subscribers(Output.TRACKS):
         publish(Output.TRACKS, encode(confirmed, frame_id=frame_id))
-    if has_subscribers(Output.MARKERS):
+    if frame_id is not None and has_subscribers(Output.MARKERS):
         approach = result.approach_pose
         publish(Output.MARKERS, encode_markers(confirmed, frame_id=frame_id, approach=approach))
     if has_subscribers(Output.DEBUG_IMAGE):
@@ -49,12 +49,21 @@ def publish_views(
 
 
 def publish_nobody(
-    stamp_ns: int, config: Config, publish: Publish, has_subscribers: HasSubscribers
+    stamp_ns: int, frame_id: str | None, publish: Publish, has_subscribers: HasSubscribers
 ) -> None:
-    """Take everything back, so that no raised hand stays latched when nobody looks any more."""
+    """Take everything back, so that no raised hand stays latched when nobody looks any more.
+
+    Args:
+        stamp_ns: Of the last image.
+        frame_id: The frame that people were reported in, if they were.
+        publish: Hands a message to the wire.
+        has_subscribers: Whether anybody listens to an output.
+    """
     publish(Output.HAND_RAISED, encode(False))
     nobody = Tracks.none(stamp_ns)
+    if frame_id is None:
+        return
     if has_subscribers(Output.TRACKS):
-        publish(Output.TRACKS, encode(nobody, frame_id=config.fixed_frame))
+        publish(Output.TRACKS, encode(nobody, frame_id=frame_id))
     if has_subscribers(Output.MARKERS):
-        publish(Output.MARKERS, encode_markers(nobody, frame_id=config.fixed_frame))
+        publish(Output.MARKERS, encode_markers(nobody, frame_id=frame_id))

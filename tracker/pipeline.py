@@ -77,6 +77,7 @@ class Pipeline:
         self._background = Background()
         self._last_stamp_ns: int | None = None
         self._camera_pose: RigidTransform | None = None
+        self._located_ns, self._is_supposed = 0, False
         self._notes: list[Note] = []
 
     @property
@@ -207,7 +208,9 @@ class Pipeline:
         customers_xy_m = tracks.mean[tracks.confirmed, :2]
         self._background.spare(customers_xy_m, self.config.same_person_distance_m)
         pose = approach = None
+        frame_id = self._frame_without_transform(image)
         if is_located:
+            frame_id = self.config.fixed_frame
             pose = customer_pose(tracks, robot_xy_m, self.config.fixed_frame, self.config)
         if pose is not None:
             approach = approach_pose(pose, robot_xy_m, self.config.approach_distance_m)
@@ -223,6 +226,7 @@ class Pipeline:
             scan=scan,
             scan_pose=laser_pose,
             notes=tuple(self._notes),
+            frame_id=frame_id,
             work=piecewise.work if piecewise is not None else None,
         )
 
@@ -247,7 +251,7 @@ class Pipeline:
         self.tracker.reset()
         self._background.reset()
         self.detector.reset()
-        self._camera_pose = None
+        self._camera_pose, self._is_supposed = None, False
         self._sustained_ns = -1
 
     def _note(self, kind: NoteKind, text: str) -> None:
@@ -275,7 +279,8 @@ class Pipeline:
         """The camera in the fixed frame, and whether that is known.
 
         Before the first transform the camera itself is the fixed frame: hands are still told apart
-        and counted. Where a transform is missing later, the camera is supposed where it was.
+        and counted. Where a transform is missing later, the camera is supposed where it was, and
+        once it is located again, what was measured meanwhile is doubted by how far it has moved.
         """
         frame = self._camera_frame(image)
         try:
@@ -284,6 +289,7 @@ class Pipeline:
             self._note(NoteKind.NO_POSE, f"no pose: {error}")
             if self._camera_pose is None:
                 return RigidTransform(), False
+            self._is_supposed = True
             return self._camera_pose, False
         if self._camera_pose is None and self.tracker.has_tracks:
             self._note(
@@ -292,8 +298,18 @@ class Pipeline:
             )
             self.tracker.reset()
             self._background.reset()
-        self._camera_pose = body_pose(found, frame, self.config.camera_axes)
-        return self._camera_pose, True
+        located = body_pose(found, frame, self.config.camera_axes)
+        if self._is_supposed and self._camera_pose is not None:
+            moved = located @ self._camera_pose.inverse()
+            self.tracker.doubt(moved.planar, (image.stamp_ns - self._located_ns) / 1e9)
+        self._camera_pose, self._located_ns, self._is_supposed = located, image.stamp_ns, False
+        return located, True
+
+    def _frame_without_transform(self, image: CameraImage) -> str | None:
+        """The camera's frame, as long as that is the fixed one and its axes are the body's."""
+        frame, unmoved = self._camera_frame(image), RigidTransform()
+        is_body = body_pose(unmoved, frame, self.config.camera_axes) == unmoved
+        return frame if self._camera_pose is None and is_body else None
 
     def _camera_view(self, image: CameraImage, fixed_from_camera: RigidTransform) -> View:
         """Where hands could be seen."""

@@ -9,7 +9,7 @@ from types import TracebackType
 from tracker.config import NODE_NAME, Config
 from tracker.containers import CameraImage, FrameResult, ImageArray, Scan
 from tracker.errors import RecordingError
-from tracker.messages import encode_markers
+from tracker.messages import encode, encode_markers
 from tracker.perception.drawing import draw_debug_image
 from tracker.recording import RecordingWriter
 from tracker.report.birdseye import draw_birdseye
@@ -73,11 +73,11 @@ class ReplayOutputs:
         put("/hand_raised", stamp_ns, result.hand_raised)
         debug = draw_debug_image(image, result.hands, tracks, self._config)
         put("/hand_detection_debug", stamp_ns, CameraImage(stamp_ns, image.frame_id, debug))
-        confirmed = tracks[tracks.confirmed]
-        put(f"/{NODE_NAME}/tracks", stamp_ns, confirmed)
-        frame_id = self._config.fixed_frame
-        markers = encode_markers(confirmed, frame_id=frame_id, approach=result.approach_pose)
-        put(f"/{NODE_NAME}/markers", stamp_ns, markers)
+        if result.frame_id is not None:
+            confirmed, frame_id = tracks[tracks.confirmed], result.frame_id
+            markers = encode_markers(confirmed, frame_id=frame_id, approach=result.approach_pose)
+            put(f"/{NODE_NAME}/tracks", stamp_ns, encode(confirmed, frame_id=frame_id))
+            put(f"/{NODE_NAME}/markers", stamp_ns, markers)
         self._table.write(result)
         self._video.write(self._side_by_side(image, result))
 

@@ -133,6 +133,64 @@ def test_without_transforms_hands_are_still_reported_and_no_pose_is_given():
     assert "no transform names the frame" in results[-1].notes[0].text.lower()
 
 
+@pytest.mark.parametrize(
+    ("config", "frame_id"),
+    [
+        (Config(), "camera_link"),
+        (Config(camera_frame="head_cam"), "head_cam"),
+        (Config(camera_frame="head_optical_frame"), None),
+        (Config(camera_axes="optical"), None),
+        (Config(camera_frame="head_optical_frame", camera_axes="body"), "head_optical_frame"),
+        (Config(fixed_frame="camera_link"), "camera_link"),
+    ],
+    ids=["default", "named", "optical name", "optical axes", "body axes", "fixed camera"],
+)
+def test_before_any_transform_tracks_are_in_the_cameras_frame_or_in_none(config, frame_id):
+    config = config.replace(transform_wait_s=0.0)
+    results = play(Pipeline(config, SeenHands((320, 100))), 4)
+    assert [result.frame_id for result in results] == [frame_id] * 4
+    assert results[-1].hand_raised
+
+
+def drive(speed_mps, located_frames, frames=30):
+    """A robot drives towards somebody at x = 4 m; some images come without a transform."""
+    pipeline = Pipeline(Config(transform_wait_s=0.0), SeenHands((320, 100)))
+    for child in ("camera_link", "laser"):
+        pipeline.add_transform(static("base_link", child))
+    for number in range(frames):
+        stamp_ns = START_NS + number * PERIOD_NS
+        x_m = speed_mps * number * PERIOD_NS / 1e9
+        pipeline.add_scan(person_scan(stamp_ns, x=4.0 - x_m))
+        if number in located_frames:
+            at = RigidTransform((x_m, 0.0, 0.0))
+            pipeline.add_transform(StampedTransform(stamp_ns, "map", "base_link", at))
+        yield pipeline.process(image_at(stamp_ns))
+
+
+LOST = range(12, 20)
+
+
+@pytest.mark.parametrize("speed_mps", [0.0, 0.25, 0.5, -0.5])
+def test_no_place_is_given_without_the_transform_and_an_honest_one_after_it(speed_mps):
+    whole = list(drive(speed_mps, range(30)))
+    results = list(drive(speed_mps, set(range(30)) - set(LOST)))
+    for number, result in enumerate(results[2:], 2):
+        assert result.hand_raised
+        assert result.tracks.id.tolist() == [1], number
+        assert result.frame_id == (None if number in LOST else "map")
+        if result.frame_id is not None:
+            off_m = result.tracks.mean[0, :2] - whole[number].tracks.mean[0, :2]
+            covariance = result.tracks.covariance[0, :2, :2]
+            assert off_m @ np.linalg.solve(covariance, off_m) < 5.99, f"{number}: {off_m} m"
+    assert np.hypot(*off_m) < 0.05
+
+
+def test_a_robot_that_stood_still_without_transforms_loses_no_certainty():
+    whole = list(drive(0.0, range(30)))[-1].tracks
+    gap = list(drive(0.0, set(range(30)) - set(LOST)))[-1].tracks
+    assert gap.covariance[0] == pytest.approx(whole.covariance[0], rel=0.02, abs=1e-6)
+
+
 def test_an_image_waits_for_the_transform_of_its_stamp():
     pipeline = Pipeline(Config(transform_wait_s=0.2), SeenHands())
     moved = RigidTransform((1.0, 0.0, 0.0))

@@ -182,6 +182,19 @@ def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path, write_
     assert any(raised)
 
 
+def test_without_transforms_nothing_is_written_in_the_map(tmp_path, write_bag, hand_ahead):
+    bag = write_bag(tmp_path / "in.mcap", links=())
+    for camera_frame, frame_ids in (("camera_link", {"camera_link"}), ("eye_optical", set())):
+        config = Config(camera_frame=camera_frame)
+        replay(bag, tmp_path / "out", config, detector=hand_ahead)
+        said = {
+            message.markers[0].header.frame_id if "markers" in topic else message.header.frame_id
+            for topic, _, message in read_topics(tmp_path / "out/output.mcap")
+            if "tracks" in topic or "markers" in topic
+        }
+        assert said == frame_ids
+
+
 def test_the_camera_itself_can_be_the_fixed_frame(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap", links=())
     config = Config(fixed_frame="camera_link")

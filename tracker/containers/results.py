@@ -121,6 +121,9 @@ class FrameResult:
         scan: The scan that was used, if any.
         scan_pose: x_m, y_m, yaw_rad of that scan's laser in the fixed frame, if known.
         notes: What was missing or odd about this image.
+        frame_id: The frame that `tracks` are in: the fixed one; before the first transform the
+            camera's. None where it is unknown, so that no place can be given: a transform is
+            missing that was there before, or there was none and the camera's axes are optical.
         work: What perception did, where the detector tells; of all fields the only one that
             differs when the same recording is replayed.
     """
@@ -136,4 +139,5 @@ class FrameResult:
     scan: Scan | None
     scan_pose: FloatArray | None
     notes: tuple[Note, ...] = ()
+    frame_id: str | None = None
     work: PerceptionWork | None = None

@@ -13,6 +13,7 @@ from tracker.config import Config
 from tracker.containers import FloatArray, Measurements, Tracks, check_stamp
 from tracker.tracking.frame import track
 from tracker.tracking.innovations import Watch
+from tracker.tracking.modes import Belief
 from tracker.tracking.motion import modes_of
 from tracker.tracking.people import People
 from tracker.tracking.selection import Selector
@@ -91,6 +92,22 @@ class PersonTracker:
     def lower_hands(self) -> None:
         """Let every hand count as down until it is seen up again; identities stay."""
         self._people = self._people.replace(streaks=Streaks.begin(len(self._people)))
+
+    def doubt(self, moved: FloatArray, over_s: float) -> None:
+        """Widen what is believed of everybody by a motion that they may be off by.
+
+        Args:
+            moved: Shape (3,): x_m, y_m, yaw_rad of a rigid motion about the origin, such as the
+                camera's while it was supposed to stand still.
+            over_s: In which time.
+        """
+        belief = self._people.belief
+        cos, sin = np.cos(moved[2]), np.sin(moved[2])
+        here_m = belief.mean[..., :2]
+        off_m = here_m @ np.array([[cos, sin], [-sin, cos]]) + moved[:2] - here_m
+        off = np.concatenate([off_m, off_m / max(over_s, 1e-3)], axis=-1)
+        wider = belief.covariance + off[..., :, None] * off[..., None, :]
+        self._people = self._people.replace(belief=Belief(belief.weight, belief.mean, wider))
 
     def step(
         self,
