@@ -19,7 +19,8 @@ from rich.table import Table
 
 from tracker import Config
 from tracker.evaluation.annotated_scans import read_annotated_scans, score_clusters
-from tracker.ranging import Background, find_people
+from tracker.geometry import RigidTransform
+from tracker.ranging import Background, locate_scan, scan_people
 
 RECORDING = (
     Path(__file__).parents[1] / "../shared/data/scans/leg_tracker__positive_1_extracted.bag"
@@ -32,15 +33,10 @@ def milliseconds_per_scan(path: Path, config: Config) -> tuple[float, float]:
     background, finding, learning = Background(), [], []
     for scan, _ in read_annotated_scans(path):
         begin = time.perf_counter()
-        people = find_people(
-            scan,
-            np.zeros(3),
-            segment_jump_m=config.segment_jump_m,
-            body_width_m=config.body_width_m,
-            range_max_m=config.person_range_max_m,
-        )
+        located = locate_scan(scan, RigidTransform())
+        people = scan_people(located, config)
         middle = time.perf_counter()
-        background.observe(scan, np.zeros(3), people.xy_m, config.background_after_s)
+        background.observe(located, people.xy_m, config.background_after_s)
         background.holds(people.xy_m)
         finding.append(middle - begin)
         learning.append(time.perf_counter() - middle)

@@ -16,7 +16,7 @@ import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Measurements, Scan
+from tracker.containers import CameraImage, FrameResult, Hands, LocatedScan, Measurements, Scan
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform
 from tracker.notes import Note, NoteKind
@@ -25,6 +25,7 @@ from tracker.ranging import (
     Background,
     body_pose,
     expected_hands,
+    locate_scan,
     measure_people,
     scan_people,
 )
@@ -175,8 +176,8 @@ class Pipeline:
         self._follow_clock(image.stamp_ns)
 
         fixed_from_camera, is_located = self._locate_camera(image)
-        scan, laser_pose = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
-        people = scan_people(scan, laser_pose, self.config)
+        scan = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
+        people = scan_people(scan, self.config)
         piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
         if piecewise is not None and is_located:
             known_xy_m = np.concatenate([self.tracker.positions_m, people.xy_m])
@@ -187,7 +188,6 @@ class Pipeline:
             self.camera,
             fixed_from_camera,
             scan,
-            laser_pose,
             self.config,
             sustain=scan is not None and scan.stamp_ns > self._sustained_ns,
             background=self._background if self.config.background_after_s > 0.0 else None,
@@ -203,7 +203,7 @@ class Pipeline:
             measurements,
             robot_xy_m,
             view=self._camera_view(image, fixed_from_camera),
-            scan_view=self._scan_view(scan, laser_pose),
+            scan_view=self._scan_view(scan),
         )
         customers_xy_m = tracks.mean[tracks.confirmed, :2]
         self._background.spare(customers_xy_m, self.config.same_person_distance_m)
@@ -224,7 +224,6 @@ class Pipeline:
             approach_pose=approach,
             sensor_pose=fixed_from_camera.planar if is_located else None,
             scan=scan,
-            scan_pose=laser_pose,
             notes=tuple(self._notes),
             frame_id=frame_id,
             work=piecewise.work if piecewise is not None else None,
@@ -320,21 +319,17 @@ class Pipeline:
             fixed_from_camera.planar, right_rad, left_rad, self.config.person_range_max_m
         )
 
-    def _scan_view(self, scan: Scan | None, laser_pose: FloatArray | None) -> View | None:
+    def _scan_view(self, scan: LocatedScan | None) -> View | None:
         """Where the scan could show people; None where there is none, or it is not asked."""
-        if scan is None or laser_pose is None or not self.config.scan_sustains:
+        if scan is None or not self.config.scan_sustains:
             return None
-        first_rad, last_rad = sorted(scan.angles_rad[[0, -1]])
-        half_beam_rad = abs(scan.angle_increment_rad) / 2
         range_max_m = min(scan.range_max_m, self.config.person_range_max_m)
-        return View.between(
-            laser_pose, first_rad - half_beam_rad, last_rad + half_beam_rad, range_max_m
-        )
+        return View.between(np.append(scan.laser_xy_m, 0.0), *scan.span_rad, range_max_m)
 
     def _nearest_scan(
         self, stamp_ns: int, fixed_from_camera: RigidTransform, is_located: bool
-    ) -> tuple[Scan | None, FloatArray | None]:
-        """The nearest scan that can be located, and its laser in the fixed frame at its stamp.
+    ) -> LocatedScan | None:
+        """The nearest scan that can be located, in the fixed frame at its own stamp.
 
         Transforms come later than scans: the nearest scan may lie beyond the last of them, where
         the one before serves as well.
@@ -342,7 +337,7 @@ class Pipeline:
         scans = self.room.scans_by_age(stamp_ns)
         if not scans:
             self._note(NoteKind.NO_SCAN, "no scan has come")
-            return None, None
+            return None
         limit_s = self.config.scan_max_age_s
         timely = [scan for scan in scans if abs(scan.stamp_ns - stamp_ns) <= _ns(limit_s)]
         if not timely:
@@ -351,7 +346,7 @@ class Pipeline:
             self._note(
                 NoteKind.SCAN_TOO_OLD, f"no scan within {limit_s:g} s: the nearest is {where}"
             )
-            return None, None
+            return None
         usable = [scan for scan in timely if len(scan.ranges_m) >= _BEAMS_MIN]
         if not usable:
             beams = len(timely[0].ranges_m)
@@ -359,11 +354,12 @@ class Pipeline:
                 NoteKind.SCAN_WITHOUT_BEAMS,
                 f"the scan has {beams} beams; {_BEAMS_MIN} or more are needed",
             )
-            return None, None
+            return None
         if not usable[0].valid.any():
             self._note(NoteKind.SCAN_WITHOUT_RETURNS, "no beam of the scan has a return")
         if not is_located or self.config.fixed_frame == self.config.camera_frame:
-            return usable[0], self._laser_beside_camera(usable[0], fixed_from_camera).planar
+            laser = self._laser_beside_camera(usable[0], fixed_from_camera)
+            return locate_scan(usable[0], laser)
         failures = []
         for scan in usable:
             try:
@@ -373,9 +369,16 @@ class Pipeline:
             except TransformError as error:
                 failures.append(error)
             else:
-                return scan, laser.planar
+                return locate_scan(scan, laser, self._laser_at_end(scan))
         self._note(NoteKind.SCAN_NOT_LOCATED, f"scan unused: {failures[0]}")
-        return None, None
+        return None
+
+    def _laser_at_end(self, scan: Scan) -> RigidTransform | None:
+        """The laser at the last beam of a scan, where transforms allow."""
+        try:
+            return self.transforms.lookup(self.config.fixed_frame, scan.frame_id, scan.end_ns)
+        except TransformError:
+            return None
 
     def _laser_beside_camera(
         self, scan: Scan, fixed_from_camera: RigidTransform

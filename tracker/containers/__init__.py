@@ -12,6 +12,7 @@ from tracker.containers.arrays import (
     check_stamp,
 )
 from tracker.containers.hands import Hands
+from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import MeasurementModel, Measurements
 from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
 from tracker.containers.sensors import CameraImage, Scan
@@ -25,6 +26,7 @@ __all__ = [
     "Hands",
     "ImageArray",
     "IntArray",
+    "LocatedScan",
     "MeasurementModel",
     "Measurements",
     "PerceptionWork",

@@ -18,8 +18,8 @@ from tracker.containers.arrays import (
     frozen,
 )
 from tracker.containers.hands import Hands
+from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
-from tracker.containers.sensors import Scan
 from tracker.containers.tracks import Tracks
 from tracker.errors import ShapeError
 from tracker.notes import Note
@@ -118,8 +118,7 @@ class FrameResult:
             is selected or the estimate is not good enough to drive to.
         approach_pose: In front of that customer, facing the customer.
         sensor_pose: x_m, y_m, yaw_rad of the camera in the fixed frame; None without a transform.
-        scan: The scan that was used, if any.
-        scan_pose: x_m, y_m, yaw_rad of that scan's laser in the fixed frame, if known.
+        scan: The scan that was used, in the fixed frame, if any.
         notes: What was missing or odd about this image.
         frame_id: The frame that `tracks` are in: the fixed one; before the first transform the
             camera's. None where it is unknown, so that no place can be given: a transform is
@@ -136,8 +135,7 @@ class FrameResult:
     customer_pose: Pose | None
     approach_pose: Pose | None
     sensor_pose: FloatArray | None
-    scan: Scan | None
-    scan_pose: FloatArray | None
+    scan: LocatedScan | None
     notes: tuple[Note, ...] = ()
     frame_id: str | None = None
     work: PerceptionWork | None = None

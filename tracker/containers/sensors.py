@@ -9,6 +9,9 @@ import numpy as np
 from tracker.containers.arrays import BoolArray, FloatArray, ImageArray, check_stamp, frozen
 from tracker.errors import ShapeError
 
+#: A turn that claims to last longer has a `time_increment` in another unit.
+_TURN_MAX_S = 1.0
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraImage:
@@ -59,7 +62,9 @@ class Scan:
         angle_increment_rad: From one beam to the next; negative for scanners that turn clockwise.
         range_min_m: Nearest range that counts.
         range_max_m: Farthest range that counts.
-        ranges_m: Shape (B,); NaN, infinite and out-of-range values mean "no return".
+        ranges_m: Shape (B,). What is not above 0 and within the limits is no return; infinite or
+            beyond `range_max_m` says that nothing is there, NaN, 0 and less say nothing.
+        time_increment_s: From one beam to the next; 0 where the driver does not tell.
 
     Raises:
         ShapeError: `ranges_m` is not one-dimensional, or the increment is zero or not finite.
@@ -73,6 +78,7 @@ class Scan:
     range_min_m: float
     range_max_m: float
     ranges_m: FloatArray
+    time_increment_s: float = 0.0
 
     def __post_init__(self) -> None:
         check_stamp(self.stamp_ns)
@@ -95,7 +101,20 @@ class Scan:
     def valid(self) -> BoolArray:
         """Shape (B,): beams with a return inside the scanner's limits."""
         ranges = self.ranges_m
-        return np.isfinite(ranges) & (ranges >= self.range_min_m) & (ranges <= self.range_max_m)
+        inside = (ranges > 0.0) & (ranges >= self.range_min_m) & (ranges <= self.range_max_m)
+        return inside & np.isfinite(ranges)
+
+    @property
+    def shows_nothing(self) -> BoolArray:
+        """Shape (B,): beams that met nothing within the scanner's reach."""
+        return np.isposinf(self.ranges_m) | (self.ranges_m > self.range_max_m)
+
+    @property
+    def end_ns(self) -> int:
+        """When the last beam was measured; the stamp where the driver does not tell."""
+        lasts_s = self.time_increment_s * (len(self.ranges_m) - 1)
+        is_told = 0.0 < lasts_s < _TURN_MAX_S
+        return self.stamp_ns + round(lasts_s * 1e9) if is_told else self.stamp_ns
 
     @property
     def angles_rad(self) -> FloatArray:

@@ -16,8 +16,9 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import FloatArray, Scan
 from tracker.errors import RecordingError
+from tracker.geometry import RigidTransform
 from tracker.messages.decode import scan_from_message
-from tracker.ranging import find_people
+from tracker.ranging import locate_scan, scan_people
 
 _SCAN, _MARKS = "sensor_msgs/msg/LaserScan", "geometry_msgs/msg/PoseArray"
 
@@ -73,13 +74,7 @@ def score_clusters(
     nearest: list[float] = []
     for scan, legs_xy_m in read_annotated_scans(path):
         marked = _join_legs(legs_xy_m)
-        found = find_people(
-            scan,
-            np.zeros(3),
-            segment_jump_m=config.segment_jump_m,
-            body_width_m=config.body_width_m,
-            range_max_m=config.person_range_max_m,
-        ).xy_m
+        found = scan_people(locate_scan(scan, RigidTransform()), config).xy_m
         distance = np.linalg.norm(marked[:, None] - found, axis=-1)
         people += len(marked)
         clusters += len(found)

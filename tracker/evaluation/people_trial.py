@@ -194,5 +194,4 @@ def _result(tracks: Tracks) -> FrameResult:
         approach_pose=None,
         sensor_pose=None,
         scan=None,
-        scan_pose=None,
     )

@@ -72,7 +72,7 @@ def recorded_sightings(
     frame, axes = config.camera_frame, config.camera_axes
     parts, mounting = [], RigidTransform()
     for result in recorded_frames(source, pipeline, topics=topics):
-        if result.sensor_pose is None or result.scan is None or result.scan_pose is None:
+        if result.sensor_pose is None or result.scan is None:
             continue  # nobody knows where the camera was
         looked_up = pipeline.transforms.lookup(config.fixed_frame, frame, result.stamp_ns)
         pose = body_pose(looked_up, frame, axes)

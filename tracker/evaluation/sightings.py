@@ -87,7 +87,7 @@ def sightings_of(
         config: Person-sized lengths, and the noise of hands.
     """
     hands = result.hands[result.hands.raised]
-    people = scan_people(result.scan, result.scan_pose, config)
+    people = scan_people(result.scan, config)
     if len(hands) == 0 or len(people) == 0:
         return Sightings.none()
     rays = hand_rays(hands, camera, fixed_from_camera, config)

@@ -77,6 +77,7 @@ def scan_from_message(message: Any) -> Scan:
         range_min_m=float(message.range_min),
         range_max_m=float(message.range_max),
         ranges_m=np.array(message.ranges, dtype=np.float64),
+        time_increment_s=float(message.time_increment),
     )
     _check_beams(scan, float(message.angle_max))
     return scan

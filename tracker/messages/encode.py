@@ -172,6 +172,7 @@ def _scan(scan: Scan) -> Any:
         angle_min=scan.angle_min_rad,
         angle_max=scan.angle_min_rad + beams * scan.angle_increment_rad,
         angle_increment=scan.angle_increment_rad,
+        time_increment=scan.time_increment_s,
         range_min=scan.range_min_m,
         range_max=scan.range_max_m,
         ranges=scan.ranges_m.astype(np.float32),

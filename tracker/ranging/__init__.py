@@ -3,6 +3,7 @@
 from tracker.ranging.background import Background
 from tracker.ranging.beams import beam_index, median_range
 from tracker.ranging.expected_hands import expected_hands
+from tracker.ranging.locating import locate_scan
 from tracker.ranging.measuring import measure_people, scan_people
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.rays import body_pose, hand_rays
@@ -15,6 +16,7 @@ __all__ = [
     "expected_hands",
     "find_people",
     "hand_rays",
+    "locate_scan",
     "measure_people",
     "median_range",
     "scan_people",

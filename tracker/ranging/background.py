@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, IntArray, Scan
-from tracker.geometry import normalize_angle
+from tracker.containers import BoolArray, FloatArray, IntArray, LocatedScan
 from tracker.ranging.beams import beam_index
 
 #: What moves less than this stands still: noise of a cluster's middle and of the robot's pose.
@@ -40,14 +39,11 @@ class Background:
         """Forget everything."""
         self._places, self._stamp_ns = _Places.none(), None
 
-    def observe(
-        self, scan: Scan, laser_pose: FloatArray, clusters_xy_m: FloatArray, after_s: float
-    ) -> None:
+    def observe(self, scan: LocatedScan, clusters_xy_m: FloatArray, after_s: float) -> None:
         """Learn from one scan, and forget what it has looked through.
 
         Args:
-            scan: The scan.
-            laser_pose: x_m, y_m, yaw_rad of its laser in the fixed frame.
+            scan: The scan, in the fixed frame.
             clusters_xy_m: Shape (C, 2): the person-sized things found in it.
             after_s: What has stood still for so long is background.
         """
@@ -65,7 +61,7 @@ class Background:
         if len(rows):
             xy[rows] += gain * (clusters_xy_m[distance[rows].argmin(axis=1)] - xy[rows])
         stood_s = places.stood_s + lapse_s * is_there
-        is_through = ~is_there & _is_looked_through(places.xy_m, scan, laser_pose)
+        is_through = ~is_there & _is_looked_through(places.xy_m, scan)
         through = np.where(is_through, places.through + 1, places.through * ~is_there)
         seen_ns = np.where(is_there, scan.stamp_ns, places.seen_ns)
         places = _Places(xy, stood_s, seen, seen_ns, through, stood_s >= after_s)
@@ -138,12 +134,11 @@ def _distances(a_m: FloatArray, b_m: FloatArray) -> FloatArray:
     return np.asarray(np.hypot(apart[..., 0], apart[..., 1]))
 
 
-def _is_looked_through(xy_m: FloatArray, scan: Scan, laser_pose: FloatArray) -> BoolArray:
+def _is_looked_through(xy_m: FloatArray, scan: LocatedScan) -> BoolArray:
     """Shape (K,): the beam toward a place ends well behind it, or nowhere."""
-    offset = xy_m - laser_pose[:2]
-    angle = normalize_angle(np.arctan2(offset[:, 1], offset[:, 0]) - laser_pose[2])
-    beam = beam_index(scan, angle)
-    inside = (beam >= 0) & (beam < len(scan.ranges_m))
-    ends_m = scan.ranges_m[np.where(inside, beam, 0)]
-    # NaN and 0 say nothing; infinity says that nothing was there.
+    offset = xy_m - scan.laser_xy_m
+    beam = beam_index(scan, np.arctan2(offset[:, 1], offset[:, 0]))
+    inside = (beam >= 0) & (beam < len(scan))
+    ends_m = scan.range_m[np.where(inside, beam, 0)]
+    # NaN says nothing; infinity says that nothing was there.
     return np.asarray(inside & (ends_m > np.hypot(offset[:, 0], offset[:, 1]) + _THROUGH_M))

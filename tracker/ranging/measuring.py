@@ -6,7 +6,7 @@ import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measurements, Scan
+from tracker.containers import BoolArray, FloatArray, Hands, IntArray, LocatedScan, Measurements
 from tracker.geometry import RigidTransform, normalize_angle
 from tracker.ranging.background import Background
 from tracker.ranging.hand_pairs import pair_hands
@@ -23,8 +23,7 @@ def measure_people(
     hands: Hands,
     camera: CameraModel,
     fixed_from_camera: RigidTransform,
-    scan: Scan | None,
-    laser_pose: FloatArray | None,
+    scan: LocatedScan | None,
     config: Config,
     *,
     sustain: bool = True,
@@ -37,8 +36,8 @@ def measure_people(
         hands: What perception found.
         camera: Intrinsics of the full image.
         fixed_from_camera: The camera with body axes in the fixed frame, at the image's stamp.
-        scan: The scan nearest to the image in time; None where there is none.
-        laser_pose: x_m, y_m, yaw_rad of its laser at the scan's own stamp; None with no scan.
+        scan: The scan nearest to the image in time, located at its own stamp; None where there is
+            none.
         config: The ranging group.
         sustain: Whether the scan's other person clusters are measurements too. One scan may serve
             several images; it speaks for itself only once.
@@ -54,19 +53,17 @@ def measure_people(
     pair = pair_hands(hands)
     pair = np.where(pair >= 0, pair + _PAIR_OFFSET, -1)
     if people is None:
-        people = scan_people(scan, laser_pose, config)
+        people = scan_people(scan, config)
     is_background = np.zeros(len(people), dtype=bool)
-    if background is not None and scan is not None and laser_pose is not None:
+    if background is not None and scan is not None:
         if sustain:
-            background.observe(scan, laser_pose, people.xy_m, config.background_after_s)
+            background.observe(scan, people.xy_m, config.background_after_s)
         is_background = background.holds(people.xy_m)
     if config.ranging == "spec":
         claimed = np.full(len(hands), -1, dtype=np.int64)
         range_m = np.full(len(hands), np.nan)
-        if scan is not None and laser_pose is not None:
-            range_m = range_along_rays(
-                rays, scan, laser_pose, config.scan_window_beams, config.segment_jump_m
-            )
+        if scan is not None:
+            range_m = range_along_rays(rays, scan, config.scan_window_beams, config.segment_jump_m)
     else:
         claimed = owners(rays, hands, camera, people, is_background, config.arm_reach_m)
         range_m = np.full(len(hands), np.nan)
@@ -97,15 +94,12 @@ def measure_people(
     return Measurements.concatenate(from_hands, from_scan)
 
 
-def scan_people(
-    scan: Scan | None, laser_pose: FloatArray | None, config: Config
-) -> PersonClusters:
+def scan_people(scan: LocatedScan | None, config: Config) -> PersonClusters:
     """`find_people` by the configured lengths; nobody where there is no scan."""
-    if scan is None or laser_pose is None:
+    if scan is None:
         return PersonClusters.none()
     return find_people(
         scan,
-        laser_pose,
         segment_jump_m=config.segment_jump_m,
         body_width_m=config.body_width_m,
         range_max_m=config.person_range_max_m,

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, IntArray, Scan
-from tracker.ranging.beams import is_full_turn
+from tracker.containers import BoolArray, FloatArray, IntArray, LocatedScan
 
 #: A trouser leg is about 0.12 to 0.2 m across; a table leg 0.03 to 0.06 m.
 LEG_WIDTH_MIN_M = 0.075
@@ -50,8 +49,7 @@ class PersonClusters:
 
 
 def find_people(
-    scan: Scan,
-    laser_pose: FloatArray,
+    scan: LocatedScan,
     *,
     segment_jump_m: float,
     body_width_m: float,
@@ -60,8 +58,7 @@ def find_people(
     """Find what could be a person at the height of the laser.
 
     Args:
-        scan: The scan.
-        laser_pose: x_m, y_m, yaw_rad of the laser in the fixed frame at the scan's stamp.
+        scan: The scan, in the fixed frame.
         segment_jump_m: Neighboring points farther apart than this part segments.
         body_width_m: Wider segments are background.
         range_max_m: Segments all of which is farther are left alone.
@@ -73,16 +70,15 @@ def find_people(
     if len(rows) == 0:
         return PersonClusters.none()
     rows, begins = _segments(scan, rows, segment_jump_m)
-    range_m = scan.ranges_m[rows]
-    angle = scan.angles_rad[rows] + laser_pose[2]
-    direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    points = laser_pose[:2] + range_m[:, None] * direction
+    range_m, points = scan.range_m[rows], scan.xy_m[rows]
+    heading = scan.heading_rad[rows]
+    direction = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
 
     count = np.diff(np.append(begins, len(rows)))
     extent = np.maximum.reduceat(points, begins) - np.minimum.reduceat(points, begins)
     width = np.hypot(extent[:, 0], extent[:, 1])
     # The outermost beams miss the edges by up to one spacing in all.
-    spacing = range_m[begins] * abs(scan.angle_increment_rad)
+    spacing = range_m[begins] * scan.spacing_rad
     person_sized = (width + spacing >= LEG_WIDTH_MIN_M) & (width <= body_width_m) & (count >= 2)
     # Judged as a whole: a wall that runs out of range is not cut down to a person.
     person_sized &= np.minimum.reduceat(range_m, begins) <= range_max_m
@@ -91,7 +87,7 @@ def find_people(
     return _pair_legs(middle[person_sized], width[person_sized])
 
 
-def _segments(scan: Scan, rows: IntArray, jump_m: float) -> tuple[IntArray, IntArray]:
+def _segments(scan: LocatedScan, rows: IntArray, jump_m: float) -> tuple[IntArray, IntArray]:
     """Beams with a return in an order without a seam, and where in it each segment begins.
 
     Args:
@@ -102,15 +98,13 @@ def _segments(scan: Scan, rows: IntArray, jump_m: float) -> tuple[IntArray, IntA
     Returns:
         The same beams, turned so that the first begins a segment; and positions among them.
     """
-    range_m = scan.ranges_m[rows]
-    angle = scan.angles_rad[rows]
-    points = np.stack([range_m * np.cos(angle), range_m * np.sin(angle)], axis=-1)
+    points = scan.xy_m[rows]
     step = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=-1)
-    skipped = (np.roll(rows, -1) - rows) % len(scan.ranges_m)
+    skipped = (np.roll(rows, -1) - rows) % len(scan)
     # Far away the beams themselves spread.
-    spacing = range_m * abs(scan.angle_increment_rad)
+    spacing = scan.range_m[rows] * scan.spacing_rad
     ends = (step > np.maximum(jump_m, 2.5 * spacing)) | (skipped > _DROPOUT_BEAMS + 1)
-    if not is_full_turn(scan):
+    if not scan.is_full_turn:
         ends[-1] = True
     last = np.flatnonzero(ends)
     if len(last) == 0:  # one closed ring around the scanner
@@ -120,12 +114,14 @@ def _segments(scan: Scan, rows: IntArray, jump_m: float) -> tuple[IntArray, IntA
     return np.roll(rows, -turn), np.sort(begins)
 
 
-def _is_seen_through_gap(scan: Scan, rows: IntArray, begins: IntArray, jump_m: float) -> BoolArray:
+def _is_seen_through_gap(
+    scan: LocatedScan, rows: IntArray, begins: IntArray, jump_m: float
+) -> BoolArray:
     """Segments with something nearer on both sides: a wall between two legs is not foreground."""
     ends = np.append(begins[1:], len(rows)) - 1
     first, last = rows[begins], rows[ends]
     before, after = np.roll(last, 1), np.roll(first, -1)
-    range_m, beams = scan.ranges_m, len(scan.ranges_m)
+    range_m, beams = scan.range_m, len(scan)
     covered_before = ((first - before) % beams <= _DROPOUT_BEAMS + 1) & (
         range_m[before] < range_m[first] - jump_m
     )

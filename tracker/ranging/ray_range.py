@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.containers import FloatArray, Scan
+from tracker.containers import FloatArray, LocatedScan
 from tracker.geometry import normalize_angle
 from tracker.ranging.beams import median_range
 from tracker.ranging.rays import HandRays
 
 
 def range_along_rays(
-    rays: HandRays, scan: Scan, laser_pose: FloatArray, window_beams: int, jump_m: float
+    rays: HandRays, scan: LocatedScan, window_beams: int, jump_m: float
 ) -> FloatArray:
     """Algorithm 5 at each ray, for a laser that stands and looks elsewhere than the camera.
 
@@ -20,8 +20,7 @@ def range_along_rays(
 
     Args:
         rays: Hands' directions, from the camera.
-        scan: The scan.
-        laser_pose: x_m, y_m, yaw_rad of the laser in the fixed frame.
+        scan: The scan, in the fixed frame.
         window_beams: Beams to each side whose median counts.
         jump_m: Neighboring points farther apart than this are no surface.
 
@@ -29,12 +28,12 @@ def range_along_rays(
         Shape (H,): meters from the camera; NaN where the scan gives nothing.
     """
     heading = rays.bearing_rad + rays.origin[2]
-    baseline = rays.origin[:2] - laser_pose[:2]
+    baseline = rays.origin[:2] - scan.laser_xy_m
     if not np.any(baseline):
-        return median_range(scan, heading - laser_pose[2], window_beams)
+        return median_range(scan, heading, window_beams)
     direction = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
-    angle = _angle_of_crossing(scan, laser_pose[2], baseline, heading, jump_m)
-    range_m = median_range(scan, angle, window_beams)
+    crossing = _heading_of_crossing(scan, rays.origin[:2], heading, jump_m)
+    range_m = median_range(scan, crossing, window_beams)
     # The point of the ray at that range from the laser: |baseline + s direction| = range.
     along = direction @ baseline
     reach = along**2 + range_m**2 - baseline @ baseline
@@ -42,17 +41,15 @@ def range_along_rays(
     return np.where(result > 0.0, result, np.nan)
 
 
-def _angle_of_crossing(
-    scan: Scan, laser_yaw_rad: float, baseline: FloatArray, heading: FloatArray, jump_m: float
+def _heading_of_crossing(
+    scan: LocatedScan, origin_m: FloatArray, heading: FloatArray, jump_m: float
 ) -> FloatArray:
-    """Laser angle of the nearest surface point on each ray, shape (H,); NaN for none."""
+    """Laser's heading to the nearest surface point on each ray, shape (H,); NaN for none."""
     beams = np.flatnonzero(scan.valid)
     result = np.full(len(heading), np.nan)
     if len(beams) < 2:
         return result
-    angle = scan.angles_rad[beams] + laser_yaw_rad
-    points = scan.ranges_m[beams, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    points = points - baseline
+    points = scan.xy_m[beams] - origin_m
     after = np.roll(points, -1, axis=0)
     is_surface = np.linalg.norm(after - points, axis=-1) <= jump_m
     bearing = np.arctan2(points[:, 1], points[:, 0])
@@ -64,5 +61,5 @@ def _angle_of_crossing(
     distance = np.where(crosses, distance, np.inf)
     nearest = np.argmin(distance, axis=1)
     found = crosses.any(axis=1)
-    result[found] = scan.angles_rad[beams[nearest[found]]]
+    result[found] = scan.heading_rad[beams[nearest[found]]]
     return result

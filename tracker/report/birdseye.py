@@ -8,7 +8,6 @@ import cv2
 import numpy as np
 
 from tracker.containers import FloatArray, FrameResult, ImageArray, MeasurementModel
-from tracker.report.hit_grid import scan_points
 from tracker.report.palette import FADED, INK, LIT, PAPER, ROBOT, WALL, as_bgr, person_color
 
 #: Camera of the specification: 640 columns at a focal length of 460.
@@ -47,8 +46,8 @@ def draw_birdseye(
     camera = result.sensor_pose if result.sensor_pose is not None else np.zeros(3)
     view = _View(width, height, camera, ahead_m)
     picture: ImageArray = _empty_room(width, height, ahead_m, field_of_view_rad).copy()
-    if result.scan is not None and result.scan_pose is not None:
-        view.draw_scan(picture, scan_points(result.scan, result.scan_pose, 3 * ahead_m))
+    if result.scan is not None:
+        view.draw_scan(picture, result.scan.returns_m(3 * ahead_m))
     view.draw_rays(picture, result)
     view.draw_camera(picture)
     view.draw_people(picture, result)

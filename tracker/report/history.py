@@ -124,9 +124,9 @@ class History:
             x, y, yaw = result.sensor_pose
             self.camera_path.append(float(x), float(y), float(yaw))
         scan = result.scan
-        if scan is not None and result.scan_pose is not None:
+        if scan is not None:
             if scan.stamp_ns != self._scan_stamp_ns:  # two images may share one
-                self.walls.add(scan, result.scan_pose)
+                self.walls.add(scan)
             self._scan_stamp_ns = scan.stamp_ns
         self._write_people(result.tracks[result.tracks.confirmed])
 

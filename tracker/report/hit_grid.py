@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.containers import FloatArray, Scan
-from tracker.geometry import polar_to_cartesian
+from tracker.containers import FloatArray, LocatedScan
 
 _SIDE = 1024  # cells; 31 m at first, and twice that after each coarsening
 _REACH_M = 12.0  # farther beams spread too wide to draw a wall
@@ -23,18 +22,13 @@ class HitGrid:
         self._center: FloatArray | None = None
         self._counts = np.zeros((_SIDE, _SIDE), dtype=np.uint32)
 
-    def add(self, scan: Scan, pose: FloatArray) -> None:
-        """Count one scan.
-
-        Args:
-            scan: The scan.
-            pose: Shape (3,): x_m, y_m, yaw_rad of its laser in the fixed frame.
-        """
-        points = scan_points(scan, pose, _REACH_M)
+    def add(self, scan: LocatedScan) -> None:
+        """Count one scan."""
+        points = scan.returns_m(_REACH_M)
         if len(points) == 0:
             return
         if self._center is None:
-            self._center = np.array(pose[:2], dtype=np.float64)
+            self._center = scan.laser_xy_m
         offset = points - self._center
         while np.max(np.abs(offset)) >= self.cell_m * _SIDE / 2:
             self._coarsen()
@@ -56,15 +50,3 @@ class HitGrid:
         self._counts = np.zeros_like(self._counts)
         self._counts[quarter:-quarter, quarter:-quarter] = blocks
         self.cell_m *= 2
-
-
-def scan_points(scan: Scan, pose: FloatArray, reach_m: float = np.inf) -> FloatArray:
-    """Returns of a scan in the fixed frame, shape (B', 2), no farther than `reach_m`.
-
-    Args:
-        scan: The scan.
-        pose: Shape (3,): x_m, y_m, yaw_rad of its laser in the fixed frame.
-        reach_m: Returns beyond are left out.
-    """
-    good = scan.valid & (scan.ranges_m <= reach_m)
-    return polar_to_cartesian(scan.ranges_m[good], scan.angles_rad[good] + pose[2]) + pose[:2]

@@ -21,7 +21,6 @@ from tracker.closing import Closing
 from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Tracks
 from tracker.errors import ConfigError, RecordingError
 from tracker.perception.drawing import FINGER_ROOTS, FINGERS, LOWERED_COLOR, RAISED_COLOR
-from tracker.report.hit_grid import scan_points
 from tracker.report.palette import FADED, LIT, ROBOT, WALL, person_color
 
 _TIMELINE = "stamp"
@@ -112,8 +111,8 @@ class RerunView(Closing):
     def _show_room(self, result: FrameResult) -> None:
         rerun, log = self._rerun, self._stream.log
         beams_m = np.zeros((0, 2))
-        if result.scan is not None and result.scan_pose is not None:
-            beams_m = scan_points(result.scan, result.scan_pose)
+        if result.scan is not None:
+            beams_m = result.scan.returns_m()
         log("map/scan", rerun.Points3D(_on_floor(beams_m), colors=_rgba(WALL), radii=0.015))
         if result.sensor_pose is not None:
             x, y, yaw = result.sensor_pose

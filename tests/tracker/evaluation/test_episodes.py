@@ -29,7 +29,7 @@ def result_at(frame: int, tracks: dict[int, tuple[float, float, bool]]) -> Frame
             age_s=np.zeros(count), unseen_s=np.zeros(count), hand=np.full(count, -1),
         ),
         hand_raised=bool(values[:, 2].any()), customer_pose=None, approach_pose=None,
-        sensor_pose=None, scan=None, scan_pose=None,
+        sensor_pose=None, scan=None,
     )  # fmt: skip
 
 

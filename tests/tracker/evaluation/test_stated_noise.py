@@ -4,7 +4,7 @@ from tracker import Config, Hands, Measurements, Scan
 from tracker.camera import CameraModel
 from tracker.evaluation.stated_noise import restate
 from tracker.geometry import RigidTransform
-from tracker.ranging import measure_people
+from tracker.ranging import locate_scan, measure_people
 
 CAMERA = CameraModel(460.0, 460.0, 320.0, 240.0)
 
@@ -22,15 +22,14 @@ def two_hands():
 def somebody_ahead():
     angles = np.radians(np.arange(720) / 2 - 180)
     ranges = np.where(np.abs(1.5 * np.tan(np.clip(angles, -1, 1))) < 0.2, 1.5, 5.0)
-    return Scan(0, "laser", -np.pi, np.radians(0.5), 0.05, 12.0, ranges)
+    scan = Scan(0, "laser", -np.pi, np.radians(0.5), 0.05, 12.0, ranges)
+    return locate_scan(scan, RigidTransform())
 
 
 def test_restated_noise_is_what_ranging_states_under_that_configuration():
     told, wanted = Config(), Config(range_std_m=0.3, hand_offset_std_m=0.07)
     measured, expected = (
-        measure_people(
-            two_hands(), CAMERA, RigidTransform(), somebody_ahead(), np.zeros(3), config
-        )
+        measure_people(two_hands(), CAMERA, RigidTransform(), somebody_ahead(), config)
         for config in (told, wanted)
     )
     assert np.isnan(expected.values[:, 1]).sum() == 1

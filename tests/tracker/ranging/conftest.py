@@ -4,13 +4,18 @@ import numpy as np
 import pytest
 
 from tracker import Scan
+from tracker.geometry import RigidTransform
+from tracker.ranging import locate_scan
 
 
 @pytest.fixture
 def cast():
-    """Return a function that scans circles (x, y, radius) in a round room from a laser pose."""
+    """Return a function that scans circles (x, y, radius) in a round room from a laser pose.
 
-    def cast_scan(circles, laser_pose=(0.0, 0.0, 0.0), wall_m=6.0, beams=720):
+    Some beams may be `lost`; the scan comes located.
+    """
+
+    def cast_scan(circles, laser_pose=(0.0, 0.0, 0.0), wall_m=6.0, beams=720, stamp_ns=0, lost=()):
         increment = 2 * np.pi / beams
         angles = np.arange(beams) * increment + laser_pose[2]
         ranges = np.full(beams, wall_m)
@@ -21,7 +26,9 @@ def cast():
             hit = (np.abs(across) < radius) & (along > 0)
             depth = along - np.sqrt(np.maximum(radius**2 - across**2, 0.0))
             ranges = np.where(hit, np.minimum(ranges, depth), ranges)
-        return Scan(0, "laser", 0.0, increment, 0.05, 12.0, ranges)
+        ranges[list(lost)] = np.inf
+        scan = Scan(stamp_ns, "laser", 0.0, increment, 0.05, 12.0, ranges)
+        return locate_scan(scan, RigidTransform.from_planar(*laser_pose))
 
     return cast_scan
 

@@ -3,7 +3,6 @@ import pytest
 
 from tracker.ranging import Background, find_people
 
-LASER = np.zeros(3)
 PERIOD_NS = 100_000_000
 AFTER_S = 2.0
 CHAIR = (2.0, 0.5)
@@ -15,20 +14,9 @@ def watch(cast):
 
     def show(background, circles, scans, start=0):
         for number in range(start, start + scans):
-            scan = cast(circles)
-            scan = type(scan)(
-                number * PERIOD_NS,
-                "laser",
-                0.0,
-                scan.angle_increment_rad,
-                0.05,
-                12.0,
-                scan.ranges_m,
-            )
-            people = find_people(
-                scan, LASER, segment_jump_m=0.15, body_width_m=0.8, range_max_m=8.0
-            )
-            background.observe(scan, LASER, people.xy_m, AFTER_S)
+            scan = cast(circles, stamp_ns=number * PERIOD_NS)
+            people = find_people(scan, segment_jump_m=0.15, body_width_m=0.8, range_max_m=8.0)
+            background.observe(scan, people.xy_m, AFTER_S)
         return start + scans
 
     return show
@@ -111,5 +99,5 @@ def test_memory_is_bounded(cast):
     background = Background()
     rng = np.random.default_rng(1)
     for _ in range(20):
-        background.observe(cast([]), LASER, rng.uniform(-7.0, 7.0, (200, 2)), AFTER_S)
+        background.observe(cast([]), rng.uniform(-7.0, 7.0, (200, 2)), AFTER_S)
     assert len(background._places) <= 512

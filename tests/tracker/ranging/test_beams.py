@@ -2,11 +2,14 @@ import numpy as np
 import pytest
 
 from tracker import Scan
-from tracker.ranging import beam_index, median_range
+from tracker.geometry import RigidTransform
+from tracker.ranging import beam_index, locate_scan, median_range
 
 
 def make_scan(ranges, angle_min, increment, range_min=0.1, range_max=10.0):
-    return Scan(0, "laser", angle_min, increment, range_min, range_max, np.asarray(ranges, float))
+    ranges_m = np.asarray(ranges, float)
+    scan = Scan(0, "laser", angle_min, increment, range_min, range_max, ranges_m)
+    return locate_scan(scan, RigidTransform())
 
 
 @pytest.fixture

@@ -36,9 +36,7 @@ def positions(measurements):
 
 def test_the_person_is_measured_not_the_wall_behind_the_hand(cast, legs):
     scan = cast(legs(2.0, 0.3))
-    found = measure_people(
-        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
-    )
+    found = measure_people(hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, Config())
     assert positions(found)[0] == pytest.approx([2.0, 0.3], abs=0.06)
     assert found.raised.tolist() == [True]
 
@@ -46,7 +44,7 @@ def test_the_person_is_measured_not_the_wall_behind_the_hand(cast, legs):
 def test_ranging_spec_asks_the_beam_at_the_ray(cast, legs):
     scan = cast(legs(2.0, 0.4), wall_m=4.0)
     config = Config(ranging="spec", scan_sustains=False)
-    found = measure_people(hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), config)
+    found = measure_people(hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, config)
     assert found.values[0] == pytest.approx([0.0, 4.0], abs=1e-6)
 
 
@@ -54,14 +52,14 @@ def test_ranging_spec_follows_the_ray_of_a_camera_beside_the_laser(cast):
     laser = np.array([-0.3, -0.5, 1.0])
     scan = cast([(2.0, 0.0, 0.3)], laser)
     config = Config(ranging="spec", scan_sustains=False)
-    found = measure_people(hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, laser, config)
+    found = measure_people(hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, config)
     assert found.values[0] == pytest.approx([0.0, 1.7], abs=0.03)
 
 
 def test_somebody_who_passes_far_in_front_of_a_hand_does_not_own_it(cast, legs):
     scan = cast(legs(2.0, 0.1))
     found = measure_people(
-        hands_toward((4.5, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config(scan_sustains=False)
+        hands_toward((4.5, 0.0)), CAMERA, AT_ORIGIN, scan, Config(scan_sustains=False)
     )
     assert np.isnan(found.values[0, 1])
     assert found.values[0, 0] == pytest.approx(0.0, abs=1e-9)
@@ -70,7 +68,7 @@ def test_somebody_who_passes_far_in_front_of_a_hand_does_not_own_it(cast, legs):
 def test_of_two_people_at_the_ray_the_one_as_near_as_the_hand_is_large(cast, legs):
     scan = cast(legs(1.2, 0.25) + legs(3.0, -0.1))
     for point, owner in [((1.2, 0.0), (1.2, 0.25)), ((3.0, 0.0), (3.0, -0.1))]:
-        found = measure_people(hands_toward(point), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+        found = measure_people(hands_toward(point), CAMERA, AT_ORIGIN, scan, Config())
         assert positions(found)[0] == pytest.approx(owner, abs=0.07)
 
 
@@ -80,25 +78,23 @@ def test_of_two_people_beside_the_hand_the_one_at_whom_the_thumb_points(
 ):
     scan = cast(legs(1.5, 0.35) + legs(1.5, -0.35))
     hands = hands_toward((1.5, 0.0), thumb=thumb)
-    found = measure_people(hands, CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+    found = measure_people(hands, CAMERA, AT_ORIGIN, scan, Config())
     assert positions(found)[0] == pytest.approx([1.5, owner_y], abs=0.06)
 
 
 def test_without_a_scan_the_hand_is_a_bearing_only():
-    found = measure_people(hands_toward((2.0, 0.5)), CAMERA, AT_ORIGIN, None, None, Config())
+    found = measure_people(hands_toward((2.0, 0.5)), CAMERA, AT_ORIGIN, None, Config())
     assert found.values[0, 0] == pytest.approx(np.arctan2(0.5, 2.0))
     assert np.isnan(found.values[0, 1])
 
 
 def test_other_people_in_the_scan_are_measured_as_not_raising(cast, legs):
     scan = cast(legs(2.0, 0.2) + legs(2.0, -1.0))
-    found = measure_people(
-        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
-    )
+    found = measure_people(hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, Config())
     assert found.raised.tolist() == [True, False]
     assert positions(found)[1] == pytest.approx([2.0, -1.0], abs=0.06)
     alone = measure_people(
-        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config(), sustain=False
+        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, Config(), sustain=False
     )
     assert len(alone) == 1
 
@@ -106,27 +102,27 @@ def test_other_people_in_the_scan_are_measured_as_not_raising(cast, legs):
 def test_two_hands_at_one_body_name_the_same_person(cast, legs):
     scan = cast(legs(2.0, 0.0))
     found = measure_people(
-        hands_toward((2.0, 0.3), (2.0, -0.3)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
+        hands_toward((2.0, 0.3), (2.0, -0.3)), CAMERA, AT_ORIGIN, scan, Config()
     )
     assert found.person[0] == found.person[1] >= 0
 
 
 def test_without_a_scan_a_left_and_a_right_hand_side_by_side_are_one_person():
     hands = hands_toward((2.0, 0.3), (2.0, -0.3), right=[1.0, 0.0])
-    found = measure_people(hands, CAMERA, AT_ORIGIN, None, None, Config())
+    found = measure_people(hands, CAMERA, AT_ORIGIN, None, Config())
     assert found.person[0] == found.person[1] >= 0
 
 
 def test_without_a_scan_two_right_hands_are_two_people():
     hands = hands_toward((2.0, 0.3), (2.0, -0.3))
-    found = measure_people(hands, CAMERA, AT_ORIGIN, None, None, Config())
+    found = measure_people(hands, CAMERA, AT_ORIGIN, None, Config())
     assert found.person.tolist() == [-1, -1]
 
 
 def test_the_scan_s_covariance_is_round_whatever_the_range(cast, legs):
     scan = cast(legs(3.0, 0.0))
     config = Config(range_std_m=0.1)
-    found = measure_people(hands_toward((3.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), config)
+    found = measure_people(hands_toward((3.0, 0.0)), CAMERA, AT_ORIGIN, scan, config)
     across_m = np.sqrt(found.covariance[0, 0, 0]) * found.values[0, 1]
     assert across_m == pytest.approx(0.1)
     assert np.sqrt(found.covariance[0, 1, 1]) == pytest.approx(0.1)
@@ -137,23 +133,21 @@ def still_background(scan, *points):
     background = Background()
     for number in range(700):
         later = replace(scan, stamp_ns=number * 100_000_000)
-        background.observe(later, np.zeros(3), np.array(points, float), 30.0)
+        background.observe(later, np.array(points, float), 30.0)
     return background
 
 
 def test_what_has_stood_still_for_long_sustains_nobody(cast, legs):
     scan = cast(legs(2.0, 0.2) + legs(2.0, -1.0))
     background = still_background(scan, (2.0, -1.0))
-    found = measure_people(
-        Hands.none(), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config(), background=background
-    )
+    found = measure_people(Hands.none(), CAMERA, AT_ORIGIN, scan, Config(), background=background)
     assert positions(found) == pytest.approx(np.array([[2.0, 0.2]]), abs=0.06)
 
 
 def test_who_has_stood_still_for_long_and_raises_a_hand_is_somebody(cast, legs):
     scan = cast(legs(2.0, 0.3))
     background = still_background(scan, (2.0, 0.3))
-    arguments = (CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+    arguments = (CAMERA, AT_ORIGIN, scan, Config())
     found = measure_people(hands_toward((2.0, 0.0)), *arguments, background=background)
     assert positions(found) == pytest.approx(np.array([[2.0, 0.3]]), abs=0.06)
     after = measure_people(Hands.none(), *arguments, background=background)
@@ -164,7 +158,7 @@ def test_a_person_owns_a_hand_rather_than_the_furniture_beside(cast, legs):
     scan = cast([(2.0, -0.3, 0.07), (2.0, 0.45, 0.07)])
     background = still_background(scan, (2.0, -0.3))
     found = measure_people(
-        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config(),
+        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, Config(),
         background=background,
     )  # fmt: skip
     assert positions(found)[0] == pytest.approx([2.0, 0.45], abs=0.08)
@@ -172,9 +166,7 @@ def test_a_person_owns_a_hand_rather_than_the_furniture_beside(cast, legs):
 
 def test_somebody_far_behind_does_not_own_a_hand_that_is_near(cast, legs):
     scan = cast(legs(5.5, 0.3))
-    found = measure_people(
-        hands_toward((1.5, 0.0)), CAMERA, AT_ORIGIN, scan, np.zeros(3), Config()
-    )
+    found = measure_people(hands_toward((1.5, 0.0)), CAMERA, AT_ORIGIN, scan, Config())
     assert np.isnan(found.values[0, 1])
 
 
@@ -186,7 +178,7 @@ def test_a_palm_that_tilts_away_is_as_near_as_it_is_broad(cast, legs):
     landmarks[0, 5] = landmarks[0, 9] + [460.0 * 0.0323 / 1.5, 0.0]
     landmarks[0, 17] = landmarks[0, 9] - [460.0 * 0.0323 / 1.5, 0.0]
     tilted = replace(hands, landmarks_px=landmarks)
-    found = measure_people(tilted, CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+    found = measure_people(tilted, CAMERA, AT_ORIGIN, scan, Config())
     assert positions(found)[0] == pytest.approx([1.5, 0.25], abs=0.08)
 
 
@@ -200,7 +192,7 @@ def test_of_two_people_at_the_hand_the_one_whose_torso_is_known(cast, legs):
     scan = cast(legs(1.5, 0.35) + legs(1.5, -0.35))
     for y in (0.35, -0.35):
         hands = with_torso(hands_toward((1.5, 0.0)), (1.5, y))
-        found = measure_people(hands, CAMERA, AT_ORIGIN, scan, np.zeros(3), Config())
+        found = measure_people(hands, CAMERA, AT_ORIGIN, scan, Config())
         assert positions(found)[0] == pytest.approx([1.5, y], abs=0.07)
 
 
@@ -208,7 +200,7 @@ def test_a_torso_s_bearing_is_surer_than_a_wrist_s():
     hands = hands_toward((2.0, 0.3))
     config = Config()
     wrist, torso = (
-        measure_people(each, CAMERA, AT_ORIGIN, None, None, config)
+        measure_people(each, CAMERA, AT_ORIGIN, None, config)
         for each in (hands, with_torso(hands, (2.0, 0.0)))
     )
     assert torso.values[0, 0] == pytest.approx(0.0, abs=1e-9)

@@ -7,8 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from tracker.containers import FrameResult, Hands, Measurements, Scan, Tracks
+from tracker.containers import FrameResult, Hands, LocatedScan, Measurements, Scan, Tracks
+from tracker.geometry import RigidTransform
 from tracker.notes import Note, NoteKind
+from tracker.ranging import locate_scan
 
 START_NS = 1_700_000_000_123_456_789
 PERIOD_NS = 100_000_000
@@ -32,7 +34,7 @@ def _place(start: tuple[float, float], step: tuple[float, float], frame: int) ->
     return np.array(start) + np.array(step) * min(frame, 120)
 
 
-def _scan(stamp_ns: int, pose: np.ndarray, bodies: list[np.ndarray], rng) -> Scan:
+def _scan(stamp_ns: int, pose: np.ndarray, bodies: list[np.ndarray], rng) -> LocatedScan:
     angles = np.linspace(-np.pi, np.pi, 720, endpoint=False)
     directions = np.stack([np.cos(angles + pose[2]), np.sin(angles + pose[2])], axis=-1)
     ranges = np.full(len(angles), np.inf)
@@ -54,7 +56,8 @@ def _scan(stamp_ns: int, pose: np.ndarray, bodies: list[np.ndarray], rng) -> Sca
             near = along[hit] - np.sqrt(0.07**2 - off[hit] ** 2)
             ranges[hit] = np.minimum(ranges[hit], near)
     ranges += rng.normal(0, 0.01, len(ranges))
-    return Scan(stamp_ns, "laser", -np.pi, float(angles[1] - angles[0]), 0.05, 20.0, ranges)
+    scan = Scan(stamp_ns, "laser", -np.pi, float(angles[1] - angles[0]), 0.05, 20.0, ranges)
+    return locate_scan(scan, RigidTransform.from_planar(*pose))
 
 
 def make_result(frame: int, rng: np.random.Generator) -> FrameResult:
@@ -106,7 +109,7 @@ def make_result(frame: int, rng: np.random.Generator) -> FrameResult:
     return FrameResult(
         stamp_ns=stamp_ns, hands=Hands.none(), measurements=measurements, tracks=tracks,
         hand_raised=bool(up_ids), customer_pose=None, approach_pose=None, sensor_pose=pose,
-        scan=_scan(stamp_ns, pose, bodies, rng), scan_pose=pose,
+        scan=_scan(stamp_ns, pose, bodies, rng),
         notes=() if frame % 100 else (Note(NoteKind.SCAN_TOO_OLD, "no scan within 0.25 s"),),
     )  # fmt: skip
 
@@ -139,7 +142,7 @@ def result_of() -> Callable[..., FrameResult]:
         )  # fmt: skip
         values = {
             "hands": Hands.none(), "measurements": Measurements.none(), "customer_pose": None,
-            "approach_pose": None, "sensor_pose": None, "scan": None, "scan_pose": None,
+            "approach_pose": None, "sensor_pose": None, "scan": None,
             "hand_raised": bool(np.any(raised)),
         }  # fmt: skip
         return FrameResult(stamp_ns=stamp_ns, tracks=tracks, **{**values, **fields})

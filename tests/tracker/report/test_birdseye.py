@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 
 from tracker.containers import Measurements, Scan
+from tracker.geometry import RigidTransform
+from tracker.ranging import locate_scan
 from tracker.report.birdseye import draw_birdseye
 from tracker.report.palette import LIT, as_bgr, person_color
 
@@ -38,10 +40,11 @@ def test_the_picture_has_the_size_asked_for(result_of, results):
 
 def test_nothing_far_away_or_unknown_breaks_the_picture(result_of):
     nan_range = Measurements.polar([0.1], np.nan, 0.02, 0.1)
-    scan = Scan(0, "", 0.0, 0.1, 0.1, 1e9, np.array([np.nan, np.inf, 1e8, 0.0]))
+    beams = Scan(0, "", 0.0, 0.1, 0.1, 1e9, np.array([np.nan, np.inf, 1e8, 0.0]))
+    scan = locate_scan(beams, RigidTransform())
     result = result_of(
         0, (1, 1e12, -1e12, True), (2, np.nan, 0.0, False),
-        measurements=nan_range, scan=scan, scan_pose=np.zeros(3), sensor_pose=np.zeros(3),
+        measurements=nan_range, scan=scan, sensor_pose=np.zeros(3),
     )  # fmt: skip
     assert draw_birdseye(result).shape == (480, 480, 3)
 
