@@ -12,7 +12,7 @@ from tracker.tracking.filter import positions
 
 #: Farther than this from the fixed frame's origin there is no person, and less or more than these
 #: variances no sensor claims; beyond them squares overflow.
-ABSURD_M = 1e6
+ABSURD_M = 1e9
 VARIANCE_MIN, VARIANCE_MAX = 1e-12, 1e9
 #: A bearing with a wider variance than a full turn's says nothing.
 BEARING_VARIANCE_MAX = (2.0 * np.pi) ** 2

@@ -135,3 +135,33 @@ def test_a_bias_of_the_hand_keeps_many_looks_from_being_more_certain_than_one():
         spread[duration_s] = np.sqrt(tracks.covariance[0, 1, 1])
     # The hand stands 0.08 rad * 2.5 m = 0.2 m off, and stays there.
     assert spread[0.0] < 0.15 < spread[5.0]
+
+
+@pytest.mark.parametrize("compiled", [True, False], ids=["compiled", "arrays"])
+@pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
+@pytest.mark.parametrize("far_m", [(467_000.25, 5_540_000.5), (-1e8, 1e8)], ids=["UTM", "1e8 m"])
+def test_people_are_tracked_alike_on_a_map_whose_origin_is_far_away(config, compiled, far_m):
+    here, there = (
+        PersonTracker(config, compiled=compiled),
+        PersonTracker(config, compiled=compiled),
+    )
+    far = np.array(far_m)
+    rng = np.random.default_rng(4)
+    for number in range(60):
+        robot = np.array([0.02 * number, -0.3])
+        toward = np.array([[2.0, 0.5 + 0.01 * number], [3.0, -1.0]]) - robot
+        toward += rng.normal(0.0, 0.05, toward.shape)
+        bearing, range_m = np.arctan2(toward[:, 1], toward[:, 0]), np.hypot(*toward.T)
+        near, away = (
+            tracker.step(
+                number * 10**8,
+                Measurements.polar(bearing, [range_m[0], np.nan], 0.03, 0.08, [*origin, 0.0]),
+                origin,
+            )
+            for tracker, origin in ((here, robot), (there, robot + far))
+        )
+        assert away.id.tolist() == near.id.tolist()
+        np.testing.assert_allclose(away.mean[:, :2] - far, near.mean[:, :2], atol=1e-4)
+        np.testing.assert_allclose(away.covariance, near.covariance, atol=1e-4)
+    assert len(near) == 2
+    assert near.raised.all()
