@@ -117,6 +117,12 @@ class Config(BaseModel):
         "or auto (optical if its name holds `optical`).",
         group="frames",
     )  # fmt: skip
+    camera_roll_deg: float = _parameter(
+        0.0, "How far the camera is rolled, clockwise as seen from behind it, beyond what its "
+        "transform says; hands are searched in upright pictures. For cameras without a transform, "
+        "or one that does not tell of their mounting.",
+        unit="deg", group="frames", live=True, ge=-180.0, le=180.0,
+    )  # fmt: skip
     use_camera_info: bool = _parameter(
         True, "Take intrinsics and distortion from CameraInfo when it comes.",
         group="frames",

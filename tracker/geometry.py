@@ -128,6 +128,12 @@ class RigidTransform:
         return float(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
 
     @property
+    def roll_rad(self) -> float:
+        """Turn of the source frame about its own x axis, from where its y axis lies level."""
+        x, y, z, w = self.quaternion_xyzw
+        return float(np.arctan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y)))
+
+    @property
     def planar(self) -> FloatArray:
         """Shape (3,): x_m, y_m, yaw_rad of the source frame in the target frame."""
         return np.array([self.translation_m[0], self.translation_m[1], self.yaw_rad])

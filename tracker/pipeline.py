@@ -18,11 +18,13 @@ from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Hands, LocatedScan, Measurements, Scan
 from tracker.errors import TransformError
-from tracker.geometry import RigidTransform
+from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.notes import Note, NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.upright import Turn, upright_turn
 from tracker.ranging import (
     Background,
+    bearing_span_rad,
     body_pose,
     expected_hands,
     locate_scan,
@@ -79,6 +81,7 @@ class Pipeline:
         self._last_stamp_ns: int | None = None
         self._camera_pose: RigidTransform | None = None
         self._located_ns, self._is_supposed = 0, False
+        self._turn = Turn()
         self._notes: list[Note] = []
 
     @property
@@ -179,10 +182,15 @@ class Pipeline:
         scan = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
         people = scan_people(scan, self.config)
         piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
+        size = (image.width, image.height)
+        self._turn_upright(fixed_from_camera)
         if piecewise is not None and is_located:
             known_xy_m = np.concatenate([self.tracker.positions_m, people.xy_m])
-            piecewise.expect(expected_hands(known_xy_m, self.camera, fixed_from_camera))
-        hands = self.detector.find(image)
+            expected_px = expected_hands(known_xy_m, self.camera, fixed_from_camera)
+            piecewise.expect(self._turn.boxes(expected_px, size))
+        upright = self._turn.picture(image)
+        upright_hands = self.detector.find(upright)
+        hands = self._turn.hands_back(upright_hands, size)
         measurements = measure_people(
             hands,
             self.camera,
@@ -196,7 +204,7 @@ class Pipeline:
         if scan is not None:
             self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
         if self.config.appearance_weight and hands.raised.any():
-            measurements = _with_clothes(measurements, image, hands)
+            measurements = _with_clothes(measurements, upright, upright_hands)
         robot_xy_m = fixed_from_camera.planar[:2]
         tracks = self.tracker.step(
             image.stamp_ns,
@@ -287,7 +295,7 @@ class Pipeline:
         except TransformError as error:
             self._note(NoteKind.NO_POSE, f"no pose: {error}")
             if self._camera_pose is None:
-                return RigidTransform(), False
+                return self._rolled(RigidTransform()), False
             self._is_supposed = True
             return self._camera_pose, False
         if self._camera_pose is None and self.tracker.has_tracks:
@@ -297,7 +305,7 @@ class Pipeline:
             )
             self.tracker.reset()
             self._background.reset()
-        located = body_pose(found, frame, self.config.camera_axes)
+        located = self._rolled(body_pose(found, frame, self.config.camera_axes))
         if self._is_supposed and self._camera_pose is not None:
             moved = located @ self._camera_pose.inverse()
             self.tracker.doubt(moved.planar, (image.stamp_ns - self._located_ns) / 1e9)
@@ -310,9 +318,23 @@ class Pipeline:
         is_body = body_pose(unmoved, frame, self.config.camera_axes) == unmoved
         return frame if self._camera_pose is None and is_body else None
 
+    def _rolled(self, target_from_camera: RigidTransform) -> RigidTransform:
+        """The camera as it is mounted, where that is not what its transform says."""
+        roll_rad = float(np.radians(self.config.camera_roll_deg))
+        roll = RigidTransform(quaternion_xyzw=euler_to_quaternion(roll_rad, 0.0, 0.0))
+        return target_from_camera @ roll if roll_rad else target_from_camera
+
+    def _turn_upright(self, fixed_from_camera: RigidTransform) -> None:
+        """The detector sees pictures in which up is up; it begins anew where the turn changes."""
+        turn = upright_turn(fixed_from_camera, self._turn)
+        if turn != self._turn:
+            self.detector.reset()
+        self._turn = turn
+
     def _camera_view(self, image: CameraImage, fixed_from_camera: RigidTransform) -> View:
         """Where hands could be seen."""
-        right_rad, left_rad = self.camera.horizontal_span_rad(image.width)
+        size = (image.width, image.height)
+        right_rad, left_rad = bearing_span_rad(self.camera, size, fixed_from_camera)
         if self.config.bearing_convention == "spec":
             right_rad, left_rad = -left_rad, -right_rad
         return View.between(
@@ -393,7 +415,7 @@ class Pipeline:
                 "no mounting of the laser: it is taken to be the camera's",
             )
             return fixed_from_camera
-        laser_from_camera = body_pose(mounting, frame, self.config.camera_axes)
+        laser_from_camera = self._rolled(body_pose(mounting, frame, self.config.camera_axes))
         return fixed_from_camera @ laser_from_camera.inverse()
 
 

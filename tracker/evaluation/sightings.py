@@ -104,7 +104,7 @@ def sightings_of(
         hand=hand,
         bearing_rad=rays.bearing_rad[hand],
         std_rad=np.hypot(rays.bearing_std_rad[hand], beside_std),
-        side=owner_side(hands)[hand],
+        side=owner_side(hands, rays.roll_rad)[hand],
         body_xy_m=xy_m,
         size_misfit=size_misfit(hands, camera, along)[near],
     )

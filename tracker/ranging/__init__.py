@@ -2,6 +2,7 @@
 
 from tracker.ranging.background import Background
 from tracker.ranging.beams import beam_index, median_range
+from tracker.ranging.bearing_span import bearing_span_rad
 from tracker.ranging.expected_hands import expected_hands
 from tracker.ranging.locating import locate_scan
 from tracker.ranging.measuring import measure_people, scan_people
@@ -12,6 +13,7 @@ __all__ = [
     "Background",
     "PersonClusters",
     "beam_index",
+    "bearing_span_rad",
     "body_pose",
     "expected_hands",
     "find_people",

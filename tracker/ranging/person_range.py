@@ -63,7 +63,7 @@ def owners(
     heading = rays.bearing_rad + rays.origin[2]
     along, across = ray_coordinates(people.xy_m, rays.origin[:2], heading)
     beside = (along > 0.0) & (np.abs(across) <= arm_reach_m)
-    offset = _BESIDE_M * owner_side(hands)
+    offset = _BESIDE_M * owner_side(hands, rays.roll_rad)
     beside_m = np.where(hands.is_owned, _TORSO_STD_M, _BESIDE_STD_M)[:, None]
     misfit = ((across - offset[:, None]) / beside_m) ** 2 + size_misfit(hands, camera, along)
     beside &= misfit <= _MISFIT_MAX
@@ -72,14 +72,19 @@ def owners(
     return np.where(beside.any(axis=1), best, -1)
 
 
-def owner_side(hands: Hands) -> FloatArray:
+def owner_side(hands: Hands, roll_rad: float = 0.0) -> FloatArray:
     """On which side of the hand its owner should stand, shape (H,), from 1 (left) to -1 (right).
 
     Whether it is a left or a right hand, seen from the front or from behind: held up beside the
     head, its thumb is on the head's side. A hand seen edge-on tells nothing. Where the ray is the
     torso's, the owner stands on it.
+
+    Args:
+        hands: In the picture.
+        roll_rad: Of the camera; `HandRays.roll_rad`.
     """
-    toward = hands.landmarks_px[:, _THUMB_TIP, 0] - hands.landmarks_px[:, _PINKY_ROOT, 0]
+    across = hands.landmarks_px[:, _THUMB_TIP] - hands.landmarks_px[:, _PINKY_ROOT]
+    toward = across @ np.array([np.cos(roll_rad), -np.sin(roll_rad)])
     side = -np.clip(toward / _palm_px(hands), -1.0, 1.0)
     return np.asarray(np.where(hands.is_owned, 0.0, side))
 

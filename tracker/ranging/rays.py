@@ -27,11 +27,14 @@ class HandRays:
         origin: x_m, y_m, yaw_rad of the camera in the fixed frame.
         bearing_rad: Shape (H,), from the camera's yaw, counter-clockwise.
         bearing_std_rad: Shape (H,), of the pixel noise alone.
+        roll_rad: Of the camera: what is level in the room is turned so far in the picture,
+            counter-clockwise.
     """
 
     origin: FloatArray
     bearing_rad: FloatArray
     bearing_std_rad: FloatArray
+    roll_rad: float = 0.0
 
 
 def hand_rays(
@@ -52,16 +55,16 @@ def hand_rays(
         config: `bearing_convention` and the wrist's noise, `wrist_noise_px`.
     """
     rays = camera.rays(np.where(hands.is_owned[:, None], hands.torso_px, hands.wrist_px))
-    if config.bearing_convention == "spec":
-        rays = rays * np.array([1.0, -1.0, 1.0])
     level = fixed_from_camera.rotate(rays)
     origin = fixed_from_camera.planar
     bearing = normalize_angle(np.arctan2(level[:, 1], level[:, 0]) - origin[2])
+    if config.bearing_convention == "spec":
+        bearing = -bearing
     # d(bearing) / d(column) of a pinhole is cos^2 / fx; a ray that climbs turns 1 / level faster.
     level_share = np.maximum(np.hypot(level[:, 0], level[:, 1]), 0.1)
     noise_px = wrist_noise_px(hands.length_px, config)
     std = noise_px / camera.fx * np.cos(bearing) ** 2 / level_share
-    return HandRays(origin, bearing, np.maximum(std, 1e-4))
+    return HandRays(origin, bearing, np.maximum(std, 1e-4), fixed_from_camera.roll_rad)
 
 
 def wrist_noise_px(length_px: FloatArray, config: Config) -> FloatArray:

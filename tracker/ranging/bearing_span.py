@@ -1,0 +1,40 @@
+"""Between which bearings does a camera see raised hands? By its whole attitude, rolled or not."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.camera import CameraModel
+from tracker.geometry import RigidTransform, normalize_angle
+
+#: Raised hands are seen between these elevations, from cameras at the height of a table or a head;
+#: the floor that a camera looks down upon is no place to look for them (guess).
+_ELEVATION_RAD = np.radians((-10.0, 40.0))
+#: Pixels along each side of the picture that are looked through.
+_GRID = 17
+
+
+def bearing_span_rad(
+    camera: CameraModel, image_size: tuple[int, int], fixed_from_camera: RigidTransform
+) -> tuple[float, float]:
+    """Bearings of what is farthest to the right and to the left among the places of raised hands.
+
+    Args:
+        camera: Intrinsics of the full image.
+        image_size: Its width and height in pixels.
+        fixed_from_camera: The camera with body axes (x forward) in the fixed frame.
+
+    Returns:
+        Counter-clockwise from the camera's yaw: to the right, then to the left. A camera that
+        sees no such place gives the span of all that it sees.
+    """
+    columns, rows = (np.linspace(0.0, length, _GRID) for length in image_size)
+    pixels = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
+    rays = fixed_from_camera.rotate(camera.rays(pixels))
+    elevation = np.arctan2(rays[:, 2], np.hypot(rays[:, 0], rays[:, 1]))
+    seen = (elevation >= _ELEVATION_RAD[0]) & (elevation <= _ELEVATION_RAD[1])
+    if not seen.any():
+        seen[:] = True
+    bearing = np.arctan2(rays[seen, 1], rays[seen, 0]) - fixed_from_camera.yaw_rad
+    bearing = normalize_angle(bearing)
+    return float(bearing.min()), float(bearing.max())
