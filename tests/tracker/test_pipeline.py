@@ -371,3 +371,80 @@ def test_each_measurement_shows_the_clothes_below_its_own_hand():
     of_hand = dict(zip(result.measurements.hand, result.measurements.appearance, strict=True))
     assert of_hand[0].sum() == pytest.approx(1.0)
     assert np.isnan(of_hand[1]).all()
+
+
+def rolled(roll_deg):
+    return RigidTransform(quaternion_xyzw=euler_to_quaternion(np.radians(roll_deg), 0.0, 0.0))
+
+
+class SeenUpright(SeenHands):
+    """Finds a raised hand so many pixels to the right of an upright picture's middle."""
+
+    def find(self, image):
+        self.size = (image.width, image.height)
+        self.wrists_px = (((image.width - 1) / 2 + 92.0, (image.height - 1) / 2),)
+        return super().find(image)
+
+
+CENTERED = CameraModel(460.0, 460.0, 319.5, 239.5)
+
+
+@pytest.mark.parametrize("convention", ["rep103", "spec"])
+@pytest.mark.parametrize("roll_deg", [0.0, 90.0, -90.0, 180.0, 45.0, -160.0])
+def test_a_rolled_camera_gives_the_bearing_of_the_hand_in_the_upright_picture(
+    roll_deg, convention
+):
+    pipeline = Pipeline(Config(bearing_convention=convention), SeenUpright())
+    pipeline.set_camera(CENTERED)
+    pipeline.add_transform(static("map", "camera_link", rolled(roll_deg)))
+    (result,) = play(pipeline, 1, scan=None)
+    to_the_right = -1.0 if convention == "rep103" else 1.0
+    assert result.measurements.values[:, 0] == pytest.approx([to_the_right * np.arctan(0.2)])
+    assert result.sensor_pose == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+
+
+def test_a_camera_on_its_side_is_searched_in_a_picture_that_stands():
+    pipeline = Pipeline(Config(), SeenUpright())
+    pipeline.add_transform(static("map", "camera_link", rolled(90.0)))
+    (result,) = play(pipeline, 1, scan=None)
+    assert pipeline.detector.size == (480, 640)
+    fingers_px = result.hands.landmarks_px[0, 12] - result.hands.wrist_px[0]
+    assert fingers_px == pytest.approx([-60.0, 0.0])  # up is to the left in the camera's picture
+
+
+@pytest.mark.parametrize("convention", ["rep103", "spec"])
+def test_a_roll_that_no_transform_tells_is_a_parameter(convention):
+    config = Config(camera_roll_deg=-90.0, bearing_convention=convention, transform_wait_s=0.0)
+    pipeline = Pipeline(config, SeenUpright())
+    pipeline.set_camera(CENTERED)
+    (result,) = play(pipeline, 1, scan=None)
+    assert pipeline.detector.size == (480, 640)
+    to_the_right = -1.0 if convention == "rep103" else 1.0
+    assert result.measurements.values[:, 0] == pytest.approx([to_the_right * np.arctan(0.2)])
+
+
+def test_hands_are_followed_anew_only_where_the_upright_turn_changes():
+    pipeline = Pipeline(Config(), SeenUpright())
+    rolls_deg = [0.0, 2.0, 5.0, 8.0, 5.0, 40.0, 42.0, 44.0, 41.0, 88.0, 90.0]
+    for number, roll_deg in enumerate(rolls_deg):
+        stamp_ns = START_NS + number * PERIOD_NS
+        pipeline.add_transform(StampedTransform(stamp_ns, "map", "camera_link", rolled(roll_deg)))
+    play(pipeline, len(rolls_deg), scan=None)
+    assert pipeline.detector.resets == 2  # for the turns by 40 and by 90 degrees
+
+
+@pytest.mark.parametrize("roll_deg", [0.0, 90.0, 180.0])
+def test_the_view_of_a_rolled_camera_is_that_of_its_upright_picture(roll_deg, monkeypatch):
+    pipeline = Pipeline(Config(), SeenHands())
+    pipeline.set_camera(CENTERED)
+    pipeline.add_transform(static("map", "camera_link", rolled(roll_deg)))
+    views, step = [], pipeline.tracker.step
+
+    def step_and_tell(*words, view, **others):
+        views.append(view)
+        return step(*words, view=view, **others)
+
+    monkeypatch.setattr(pipeline.tracker, "step", step_and_tell)
+    play(pipeline, 1, scan=None)
+    half_px = 240.0 if roll_deg == 90.0 else 320.0
+    assert views[0].horizontal_fov_rad == pytest.approx(2 * np.arctan(half_px / 460.0), abs=1e-3)
