@@ -1,8 +1,9 @@
-"""Which ray does a pixel see? The pinhole camera with its distortion."""
+"""Which ray does a pixel see? Intrinsics, the picture size they belong to, and the lens."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,27 +11,41 @@ from numpy.typing import ArrayLike
 from tracker.containers import FloatArray
 from tracker.errors import ConfigError
 from tracker.geometry import BODY_FROM_OPTICAL
+from tracker.lens import Lens, lens_of
 
-#: Coefficients each distortion model carries, by the names of sensor_msgs/CameraInfo.
-DISTORTION_MODELS = {
-    "": (0,),
-    "plumb_bob": (0, 4, 5),
-    "rational_polynomial": (0, 8),
-    "equidistant": (0, 4),
-}
+#: Sizes of the same shape differ by less than this share; a driver pads or rounds a row or two.
+_SHAPE_SHARE = 0.01
+#: A principal point lies within this share of the width and of the height from the middle. Guess:
+#: calibrated cameras in the field keep within 0.06; the intrinsics of a picture 1.25 times as
+#: large are 0.1 off.
+_OFF_MIDDLE_SHARE = 0.08
+#: Points between the principal point and the picture's edge that are asked where they look.
+_SPAN_STEPS = 256
+
+
+class Sensor(NamedTuple):
+    """The whole picture of the sensor, in pixels of the one that is cut from it."""
+
+    left_px: float
+    top_px: float
+    width_px: float
+    height_px: float
 
 
 @dataclass(frozen=True, slots=True)
 class CameraModel:
-    """Intrinsics of the full-size image.
+    """Intrinsics of pictures of one size.
 
     Attributes:
         fx: Focal length along the columns, pixels.
         fy: Focal length along the rows, pixels.
         cx: Column of the principal point, pixels.
         cy: Row of the principal point, pixels.
-        distortion: Coefficients in OpenCV's order; empty for a picture without distortion.
-        distortion_model: One of `DISTORTION_MODELS`.
+        distortion: Coefficients in OpenCV's order; empty for a lens without distortion.
+        distortion_model: A name out of `lens.DISTORTION_MODELS`, in any spelling.
+        width: Columns of the picture they belong to; None where nobody knows.
+        height: Its rows; None where nobody knows.
+        sensor: Where the picture is a region of the sensor's, that whole picture.
 
     Raises:
         ConfigError: A focal length is not positive, a number not finite, the distortion unknown.
@@ -42,73 +57,158 @@ class CameraModel:
     cy: float
     distortion: tuple[float, ...] = ()
     distortion_model: str = ""
+    width: int | None = None
+    height: int | None = None
+    sensor: Sensor | None = None
 
     def __post_init__(self) -> None:
         numbers = (self.fx, self.fy, self.cx, self.cy, *self.distortion)
         if not np.all(np.isfinite(numbers)) or self.fx <= 0 or self.fy <= 0:
             raise ConfigError(
-                f"Camera intrinsics fx {self.fx}, fy {self.fy}, cx {self.cx}, cy {self.cy} came; "
+                f"Camera intrinsics fx {self.fx}, fy {self.fy}, cx {self.cx}, cy {self.cy}, "
+                f"distortion {list(self.distortion)} came; "
                 "needed are finite numbers and positive focal lengths. An uncalibrated camera "
                 "sends zeros: calibrate it, or set use_camera_info: false."
             )
-        allowed = DISTORTION_MODELS.get(self.distortion_model)
-        if allowed is None or (any(self.distortion) and len(self.distortion) not in allowed):
+        self.lens  # noqa: B018  # an unknown one is refused here, not at the first picture
+
+    @property
+    def lens(self) -> Lens:
+        """What bends the light."""
+        return lens_of(self.distortion_model, self.distortion)
+
+    def for_picture(self, width: int, height: int) -> CameraModel:
+        """The intrinsics of a picture of another size, which shows the same.
+
+        Args:
+            width: Columns of the picture.
+            height: Rows of the picture.
+
+        Raises:
+            ConfigError: The picture has another shape, or is larger than the region of the
+                sensor that it should be; nobody can tell what it shows.
+        """
+        if self.width is None or self.height is None:
+            return replace(self, width=width, height=height)
+        if (self.width, self.height) == (width, height):
+            return self
+        across, down = width / self.width, height / self.height
+        is_larger_than_region = self.sensor is not None and across > 1.0
+        if abs(across / down - 1.0) > _SHAPE_SHARE or is_larger_than_region:
+            what = "a region of interest" if self.sensor is not None else "pictures"
             raise ConfigError(
-                f"Distortion model {self.distortion_model!r} with {len(self.distortion)} "
-                f"coefficients came; known are {', '.join(filter(None, DISTORTION_MODELS))}."
+                f"Intrinsics of {what} of {self.width}x{self.height} came with a picture of "
+                f"{width}x{height}, which is no scaled copy; needed are the intrinsics of that "
+                "size. Mend the driver's CameraInfo (width, height, binning, roi), or set "
+                "use_camera_info: false and camera_fx, camera_fy, camera_cx, camera_cy, "
+                "camera_width, camera_height."
             )
+        return self.scaled(across, down, width, height)
+
+    def scaled(self, across: float, down: float, width: int, height: int) -> CameraModel:
+        """The intrinsics of the same view, shown with other pixels.
+
+        Args:
+            across: New columns of one old column.
+            down: New rows of one old row.
+            width: Columns of the new picture.
+            height: Rows of the new picture.
+        """
+        sensor = self.sensor
+        if sensor is not None:
+            left, top, wide, high = sensor
+            sensor = Sensor(left * across, top * down, wide * across, high * down)
+        return replace(
+            self,
+            fx=self.fx * across,
+            fy=self.fy * down,
+            cx=self.cx * across,
+            cy=self.cy * down,
+            width=width,
+            height=height,
+            sensor=sensor,
+        )
+
+    @property
+    def middle_px(self) -> tuple[float, float]:
+        """Column and row of the middle of what the whole sensor shows; NaN where nobody knows."""
+        left, top, width, height = self._whole
+        return left + width / 2, top + height / 2
+
+    @property
+    def is_centered(self) -> bool:
+        """Whether the principal point lies near the middle, as lenses are mounted.
+
+        It does not where the intrinsics belong to pictures of another size than they claim.
+        """
+        (column, row), whole = self.middle_px, self._whole
+        is_off = (
+            abs(self.cx - column) > _OFF_MIDDLE_SHARE * whole.width_px
+            or abs(self.cy - row) > _OFF_MIDDLE_SHARE * whole.height_px
+        )
+        return not is_off
+
+    @property
+    def _whole(self) -> Sensor:
+        if self.sensor is not None:
+            return self.sensor
+        return Sensor(0.0, 0.0, self.width or np.nan, self.height or np.nan)
 
     def undistort(self, pixels: ArrayLike) -> FloatArray:
         """Pixels as an ideal pinhole camera with the same intrinsics would see them.
 
         Args:
-            pixels: Shape (N, 2): column and row in the full image.
+            pixels: Shape (N, 2): column and row in the picture.
 
         Returns:
-            Shape (N, 2).
+            Shape (N, 2); NaN beyond the lens's range, and where no pinhole camera sees.
         """
-        points = np.asarray(pixels, dtype=np.float64).reshape(-1, 2)
-        if not any(self.distortion) or len(points) == 0:
-            return points
-        import cv2  # only a distorted camera needs it
-
-        matrix = np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
-        coefficients = np.array(self.distortion)
-        lens = cv2.fisheye if self.distortion_model == "equidistant" else cv2
-        ideal = lens.undistortPoints(points[:, None, :], matrix, coefficients, P=matrix)
-        return np.asarray(ideal, dtype=np.float64).reshape(-1, 2)
+        forward, left, up = self.rays(pixels).T
+        ahead = np.where(forward > 0.0, forward, np.nan)
+        return np.column_stack([self.cx - self.fx * left / ahead, self.cy - self.fy * up / ahead])
 
     def horizontal_span_rad(self, width_px: int) -> tuple[float, float]:
-        """Bearings of the picture's right and left edge, distortion aside.
+        """Bearings of the right and the left end of what the picture shows beside the axis.
+
+        Where the lens ends before the picture does, as in a fisheye's circle, the lens's.
 
         Args:
-            width_px: Of the full image.
+            width_px: Of the picture.
 
         Returns:
-            Counter-clockwise from the optical axis: the right edge's, then the left edge's.
+            Counter-clockwise from the optical axis: the right end's, then the left end's.
         """
-        return (
-            -float(np.arctan((width_px - self.cx) / self.fx)),
-            float(np.arctan(self.cx / self.fx)),
-        )
+        right_rad, left_rad = (self._end_rad(edge_px) for edge_px in (float(width_px), 0.0))
+        return right_rad, left_rad
+
+    def _end_rad(self, edge_px: float) -> float:
+        columns = np.linspace(self.cx, edge_px, _SPAN_STEPS)
+        rays = self.rays(np.column_stack([columns, np.full(_SPAN_STEPS, self.cy)]))
+        rays = rays[np.isfinite(rays[:, 0])]
+        return float(np.arctan2(rays[-1, 1], rays[-1, 0]))
 
     def rays(self, pixels: ArrayLike) -> FloatArray:
         """Unit vectors along which pixels look, in the camera's body frame (x forward).
 
         Args:
-            pixels: Shape (N, 2): column and row in the full image.
+            pixels: Shape (N, 2): column and row in the picture.
 
         Returns:
-            Shape (N, 3).
+            Shape (N, 3); NaN where the pixel lies beyond the lens's range.
         """
-        ideal = self.undistort(pixels)
-        optical = np.stack(
-            [
-                (ideal[:, 0] - self.cx) / self.fx,
-                (ideal[:, 1] - self.cy) / self.fy,
-                np.ones(len(ideal)),
-            ],
-            axis=-1,
-        )
-        body = optical @ BODY_FROM_OPTICAL.T
-        return np.asarray(body / np.linalg.norm(body, axis=-1, keepdims=True))
+        points = np.asarray(pixels, dtype=np.float64).reshape(-1, 2)
+        points = (points - [self.cx, self.cy]) / [self.fx, self.fy]
+        return np.asarray(self.lens.directions(points) @ BODY_FROM_OPTICAL.T)
+
+    def pixels(self, rays: ArrayLike) -> FloatArray:
+        """Where rays of the camera's body frame (x forward) appear: the inverse of `rays`.
+
+        Args:
+            rays: Shape (N, 3), of any length.
+
+        Returns:
+            Shape (N, 2): column and row, within the picture or not; NaN beyond the lens's range.
+        """
+        optical = np.asarray(rays, dtype=np.float64).reshape(-1, 3) @ BODY_FROM_OPTICAL
+        points = self.lens.points(optical)
+        return np.asarray(points * [self.fx, self.fy] + [self.cx, self.cy])

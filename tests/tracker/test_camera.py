@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tracker.camera import CameraModel
+from tracker.camera import CameraModel, Sensor
 from tracker.errors import ConfigError
 
 FX, FY, CX, CY = 460.0, 455.0, 322.0, 241.0
@@ -115,3 +115,90 @@ def test_the_picture_s_edges_are_the_bearings_of_their_pixels():
     rays = camera.rays([[640.0, 240.0], [0.0, 240.0]])
     assert [right, left] == pytest.approx(np.arctan2(rays[:, 1], rays[:, 0]))
     assert right < 0.0 < left
+
+
+def test_a_fisheye_shows_the_angles_of_its_edges_not_their_tangents():
+    camera = CameraModel(200.0, 200.0, 300.0, 300.0, (0.0,) * 4, "equidistant")
+    right, left = camera.horizontal_span_rad(650)
+    assert (right, left) == pytest.approx((-350 / 200, 300 / 200))  # 100 and 86 degrees
+
+
+def test_where_the_lens_ends_before_the_picture_does_so_does_the_view():
+    camera = CameraModel(300.0, 300.0, 320.0, 240.0, (-0.4, 0.0, 0.0, 0.0), "plumb_bob")
+    right, left = camera.horizontal_span_rad(640)
+    end_rad = np.arctan(math.sqrt(1 / 1.2))  # r - 0.4 r^3 turns back where 1 = 1.2 r^2
+    assert left == pytest.approx(end_rad, abs=0.05)
+    assert right == pytest.approx(-left, abs=0.01)
+    assert np.isnan(camera.rays([[639.0, 240.0]])).all()
+
+
+@pytest.mark.parametrize(("model", "coefficients"), LENSES.values(), ids=LENSES.keys())
+def test_pixels_are_where_opencv_projects_rays(model, coefficients):
+    right, down, forward = points_ahead().T
+    body = np.stack([forward, -right, -down], -1)
+    camera = CameraModel(FX, FY, CX, CY, coefficients, model)
+    expected = project(points_ahead(), model, coefficients)
+    np.testing.assert_allclose(camera.pixels(body), expected, atol=1e-6)
+
+
+def test_nothing_behind_a_straight_lens_is_seen():
+    camera = CameraModel(FX, FY, CX, CY)
+    assert np.isnan(camera.pixels([[-1.0, 0.2, 0.1], [0.0, 1.0, 0.0]])).all()
+
+
+@pytest.mark.parametrize("k", [0.25, 0.5, 1.5, 3.0])
+def test_a_resized_picture_sees_the_same_rays(k):
+    lens = (-0.2, 0.05, 0.001, 0.0, 0.0)
+    camera = CameraModel(700.0, 690.0, 655.0, 352.0, lens, "plumb_bob", 1280, 720)
+    resized = camera.for_picture(round(1280 * k), round(720 * k))
+    assert (resized.width, resized.height) == (1280 * k, 720 * k)
+    pixels = np.array([[100.0, 60.0], [1200.0, 700.0], [640.0, 10.0]])
+    np.testing.assert_allclose(resized.rays(pixels * k), camera.rays(pixels), atol=1e-9)
+
+
+def test_a_picture_rounded_by_a_pixel_or_padded_by_a_macroblock_is_the_same_picture():
+    camera = CameraModel(1400.0, 1400.0, 960.0, 540.0, width=1920, height=1080)
+    assert camera.for_picture(427, 240).fx == pytest.approx(1400 * 427 / 1920)
+    assert camera.for_picture(1920, 1088).fx == 1400.0
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1080, 1920), (1920, 1200), (1440, 1080)])
+def test_a_picture_of_another_shape_is_refused_with_both_sizes(size):
+    camera = CameraModel(1400.0, 1400.0, 960.0, 540.0, width=1920, height=1080)
+    with pytest.raises(ConfigError, match=rf"1920x1080 .* {size[0]}x{size[1]}.*no scaled copy"):
+        camera.for_picture(*size)
+
+
+def test_a_picture_larger_than_its_region_of_the_sensor_is_refused():
+    camera = CameraModel(
+        500.0, 500.0, 100.0, 80.0, width=320, height=240, sensor=Sensor(-200, -160, 640, 480)
+    )
+    assert camera.for_picture(160, 120).sensor == Sensor(-100, -80, 320, 240)
+    with pytest.raises(ConfigError, match="a region of interest of 320x240"):
+        camera.for_picture(640, 480)
+
+
+def test_intrinsics_of_no_known_size_belong_to_whatever_comes():
+    camera = CameraModel(FX, FY, CX, CY).for_picture(800, 600)
+    assert (camera.fx, camera.cx, camera.width, camera.height) == (FX, CX, 800, 600)
+
+
+@pytest.mark.parametrize(
+    ("cx", "cy", "is_centered"),
+    [
+        (655.0, 340.0, True),
+        (700.0, 360.0, True),
+        (480.0, 270.0, False),  # of 960x540
+        (800.0, 450.0, False),  # of 1600x900
+        (640.0, 240.0, False),
+    ],
+)
+def test_the_principal_point_tells_whose_size_the_intrinsics_have(cx, cy, is_centered):
+    assert CameraModel(700.0, 700.0, cx, cy, (), "", 1280, 720).is_centered is is_centered
+
+
+def test_of_a_region_the_whole_sensor_s_middle_counts():
+    sensor = Sensor(-900.0, -600.0, 1920.0, 1200.0)
+    corner = CameraModel(900.0, 900.0, 60.0, 0.0, (), "", 400, 300, sensor)
+    assert corner.is_centered
+    assert corner.middle_px == (60.0, 0.0)

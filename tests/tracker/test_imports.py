@@ -15,10 +15,10 @@ SOURCES = sorted((ROOT / "tracker").rglob("*.py"))
 FLOORS = [
     {"errors", "closing", "notes", "clock_offset"},
     {"containers", "config"},
-    {"geometry", "config_file"},
+    {"geometry", "config_file", "lens"},
     {"camera", "transforms"},
     {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
-    {"problems"},
+    {"problems", "picture_camera"},
     {"pipeline", "recording"},
     {"simulation"},
     {"evaluation"},
