@@ -256,9 +256,10 @@ def _said(
             return topics.scan, event
         case StampedTransform():
             return topics.tf_static if event.is_static else topics.tf, event
-        case CameraModel() if size is not None:  # it knows neither its picture nor its frame
+        case CameraModel() if size is not None:  # it does not know its frame
             width, height, frame_id = size
-            return topics.camera_info, CameraInfo(log_ns, frame_id, width, height, event)
+            of = (event.width or width, event.height or height)
+            return topics.camera_info, CameraInfo(log_ns, frame_id, *of, event)
     return None
 
 

@@ -103,7 +103,22 @@ class Config(BaseModel):
         unit="px", group="specification", live=True, ge=-1e5, le=1e5,
     )  # fmt: skip
 
-    # Frames.
+    # Frames and camera.
+    camera_width: int = _parameter(
+        0, "Columns of the pictures that `camera_fx` to `camera_cy` belong to. They are scaled to "
+        "pictures of another size. 0: the specification's 640x480, or the picture's own size "
+        "where the principal point lies nearer to its middle.",
+        unit="px", group="frames", ge=0, le=100_000,
+    )  # fmt: skip
+    camera_height: int = _parameter(
+        0, "Rows of the pictures that `camera_fx` to `camera_cy` belong to; as `camera_width`.",
+        unit="px", group="frames", ge=0, le=100_000,
+    )  # fmt: skip
+    picture_max_pixels: int = _parameter(
+        50_000_000, "A picture with more pixels is passed over before it is decoded, and counted: "
+        "a small file can claim a size that fills the memory.",
+        unit="px", group="frames", ge=1, le=1_000_000_000,
+    )  # fmt: skip
     fixed_frame: str = _parameter(
         "map", "Frame in which customers are tracked and poses are given.",
         group="frames",
@@ -518,6 +533,11 @@ class Config(BaseModel):
 
     @model_validator(mode="after")
     def _bounds_agree(self) -> Config:
+        if (self.camera_width == 0) != (self.camera_height == 0):
+            raise ValueError(
+                f"camera_width is {self.camera_width} and camera_height is {self.camera_height}; "
+                "set both, or neither"
+            )
         if self.confirm_detections > self.confirm_window:
             raise ValueError(
                 f"confirm_detections is {self.confirm_detections}; it must not exceed "

@@ -18,6 +18,10 @@ class NoteKind(Enum):
     SCAN_WITHOUT_RETURNS = "scan without returns"
     SCAN_NOT_LOCATED = "scan not located"
     LASER_MOUNTING_UNKNOWN = "laser mounting unknown"
+    CAMERA_INFO_REFUSED = "CameraInfo refused"
+    INTRINSICS_SCALED = "intrinsics scaled"
+    PRINCIPAL_POINT_OFF = "principal point off the middle"
+    BIT_DEPTH_GUESSED = "bit depth guessed"
 
     @property
     def is_fault(self) -> bool:
@@ -25,12 +29,27 @@ class NoteKind(Enum):
         return self in _FAULTS
 
     @property
+    def is_remark(self) -> bool:
+        """Whether it is worth saying once, and no fault."""
+        return self in _REMARKS
+
+    @property
     def leaves_scan_unused(self) -> bool:
         """Whether it tells why no scan was of use for an image."""
         return self in _WITHOUT_SCAN
 
 
-_FAULTS = frozenset({NoteKind.CLOCK_JUMPED, NoteKind.SCAN_WITHOUT_BEAMS})
+_FAULTS = frozenset(
+    {NoteKind.CLOCK_JUMPED, NoteKind.SCAN_WITHOUT_BEAMS, NoteKind.CAMERA_INFO_REFUSED}
+)
+_REMARKS = frozenset(
+    {
+        NoteKind.LASER_MOUNTING_UNKNOWN,
+        NoteKind.INTRINSICS_SCALED,
+        NoteKind.PRINCIPAL_POINT_OFF,
+        NoteKind.BIT_DEPTH_GUESSED,
+    }
+)
 _WITHOUT_SCAN = frozenset(
     {
         NoteKind.NO_SCAN,

@@ -22,6 +22,7 @@ from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.notes import Note, NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.perception.upright import Turn, upright_turn
+from tracker.picture_camera import PictureCameras, configured_camera
 from tracker.ranging import (
     Background,
     bearing_span_rad,
@@ -75,7 +76,8 @@ class Pipeline:
         self.detector = detector
         self.tracker = PersonTracker(self.config, watch=watch)
         self.room = WaitingRoom(self.config.processing_rate, transforms)
-        self.camera = _configured_camera(self.config)
+        self.camera = configured_camera(self.config)
+        self._cameras = PictureCameras(self.config)
         self._sustained_ns = -1
         self._background = Background()
         self._last_stamp_ns: int | None = None
@@ -129,7 +131,7 @@ class Pipeline:
     def set_camera(self, camera: CameraModel) -> None:
         """Take in calibrated intrinsics, unless `use_camera_info` is off."""
         if self.config.use_camera_info:
-            self.camera = camera
+            self._cameras.calibrate(camera)
 
     def add_image(self, image: CameraImage, now_ns: int | None = None) -> Verdict:
         """Queue an image, if its stamp makes sense and it is its turn at `processing_rate`.
@@ -178,6 +180,8 @@ class Pipeline:
         self._notes = []
         self._follow_clock(image.stamp_ns)
 
+        self.camera, camera_notes = self._cameras.of(image.width, image.height)
+        self._notes += camera_notes
         fixed_from_camera, is_located = self._locate_camera(image)
         scan = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
         people = scan_people(scan, self.config)
@@ -243,8 +247,7 @@ class Pipeline:
         Only parameters that are `live` take effect (`tracker.config.parameter_extra`).
         """
         self.room.images.set_rate(config.processing_rate)
-        if _configured_camera(config) != _configured_camera(self.config):
-            self.camera = _configured_camera(config)
+        self._cameras.configure(config)
         self.config = self.tracker.config = config
         self.detector.configure(config)
 
@@ -426,10 +429,6 @@ def _with_clothes(measurements: Measurements, image: CameraImage, hands: Hands) 
     of_hands = np.full((len(hands) + 1, BINS), np.nan)  # the last row for who has no hand
     of_hands[:-1][hands.raised] = clothes_histograms(image.bgr, hands[hands.raised])
     return replace(measurements, appearance=of_hands[measurements.hand])
-
-
-def _configured_camera(config: Config) -> CameraModel:
-    return CameraModel(config.camera_fx, config.camera_fy, config.camera_cx, config.camera_cy)
 
 
 def _ns(value_s: float) -> int:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tracker.clock_offset import ClockOffset
 from tracker.containers import CameraImage, FrameResult, Scan
-from tracker.notes import NoteKind
 from tracker.scan_use import ScanUse
 
 #: A scanner that serves fewer images than this share is worth a word.
@@ -41,7 +40,7 @@ class Problems:
         for note in result.notes:
             if note.kind.is_fault:
                 self.add(note.kind.value, f"{note} (image at {result.stamp_ns / 1e9:.3f} s)")
-            elif note.kind is NoteKind.LASER_MOUNTING_UNKNOWN:
+            elif note.kind.is_remark:
                 self._remarks.add(note.kind.value, note.text)
 
     def note_scan_use(self, max_age_s: float) -> None:

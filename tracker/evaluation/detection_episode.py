@@ -143,7 +143,7 @@ def _play(
     camera = scene.camera
     config = config.replace(
         camera_fx=camera.fx, camera_fy=camera.fy, camera_cx=camera.cx, camera_cy=camera.cy,
-        bearing_convention="rep103",
+        camera_width=camera.width, camera_height=camera.height, bearing_convention="rep103",
     )  # fmt: skip
     detector.reset()
     pipeline = Pipeline(config, detector)

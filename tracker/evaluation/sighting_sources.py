@@ -111,7 +111,14 @@ def simulated_sightings(
     )
     true = scene.model_copy(update={"camera": true_camera})
     believed = scene.model_copy(update={"camera": believed_camera})
-    model = CameraModel(true_camera.fx, true_camera.fy, true_camera.cx, true_camera.cy)
+    model = CameraModel(
+        true_camera.fx,
+        true_camera.fy,
+        true_camera.cx,
+        true_camera.cy,
+        width=true_camera.width,
+        height=true_camera.height,
+    )
     map_from_believed = map_from_camera(believed, 0.0)
     parts = [
         sightings_of(result, model, map_from_believed, config)

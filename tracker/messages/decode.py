@@ -7,9 +7,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tracker.camera import CameraModel
+from tracker.camera import CameraModel, Sensor
 from tracker.containers import CameraImage, Scan, Truth
-from tracker.errors import RecordingError, ShapeError
+from tracker.errors import ConfigError, RecordingError, ShapeError
 from tracker.geometry import RigidTransform
 from tracker.messages import types
 from tracker.messages.images import bgr_from_compressed, bgr_from_image
@@ -86,19 +86,38 @@ def scan_from_message(message: Any) -> Scan:
 def camera_from_message(message: Any) -> CameraModel:
     """The intrinsics of a sensor_msgs/CameraInfo, for the pictures as they are sent.
 
-    K describes the full resolution; binning and a region of interest are applied to it.
+    K belongs to a picture of `width` x `height`. A region of interest is cut from that (all of it
+    where the region has no size), then binned.
+
+    Raises:
+        ConfigError: The intrinsics make no sense, or the region does not lie in the picture.
     """
     k = message.K if hasattr(message, "K") else message.k  # ROS 1 writes it large
     d = message.D if hasattr(message, "D") else message.d
+    width, height, roi = int(message.width), int(message.height), message.roi
     across, down = max(int(message.binning_x), 1), max(int(message.binning_y), 1)
-    distortion = tuple(float(value) for value in d)
+    left, top = int(roi.x_offset), int(roi.y_offset)
+    wide, high = int(roi.width) or width - left, int(roi.height) or height - top
+    is_sized = width > 0 and height > 0
+    if is_sized and not (0 < wide <= width - left and 0 < high <= height - top):
+        raise ConfigError(
+            f"A CameraInfo tells of a region of {wide}x{high} from column {left} and row {top} "
+            f"of a picture of {width}x{height}; it must lie within. Mend the driver's roi, or "
+            "set use_camera_info: false."
+        )
+    is_cut = is_sized and (wide, high) != (width, height)
     return CameraModel(
         fx=float(k[0]) / across,
         fy=float(k[4]) / down,
-        cx=(float(k[2]) - message.roi.x_offset) / across,
-        cy=(float(k[5]) - message.roi.y_offset) / down,
-        distortion=distortion,
+        cx=(float(k[2]) - left) / across,
+        cy=(float(k[5]) - top) / down,
+        distortion=tuple(float(value) for value in d),
         distortion_model=message.distortion_model,
+        width=max(wide // across, 1) if is_sized else None,
+        height=max(high // down, 1) if is_sized else None,
+        sensor=Sensor(-left / across, -top / down, width / across, height / down)
+        if is_cut
+        else None,
     )
 
 

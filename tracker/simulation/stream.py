@@ -130,7 +130,9 @@ def map_from_laser(scene: Scene, time_s: float) -> RigidTransform:
 
 def _images(scene: Scene, rng: np.random.Generator) -> Iterator[tuple[int, Event]]:
     camera = scene.camera
-    model = CameraModel(camera.fx, camera.fy, camera.cx, camera.cy)
+    model = CameraModel(
+        camera.fx, camera.fy, camera.cx, camera.cy, width=camera.width, height=camera.height
+    )
     painter = CameraView(scene, rng)
     for stamp_ns, time_s in _ticks(scene, camera.rate_hz, scene.duration_s):
         people = people_at(scene, time_s)

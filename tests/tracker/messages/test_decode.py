@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tracker.camera import CameraModel
+from tracker.camera import CameraModel, Sensor
 from tracker.containers import CameraImage, Scan, Truth
 from tracker.errors import ClockError, ConfigError, RecordingError, ShapeError, TrackerError
 from tracker.geometry import RigidTransform
@@ -25,10 +25,51 @@ def test_binning_and_region_of_interest_shift_the_intrinsics():
     assert (camera.fx, camera.fy, camera.cx, camera.cy) == (200.0, 75.0, 110.0, 50.0)
 
 
+def region(**fields):
+    return build("sensor_msgs/msg/RegionOfInterest", **fields)
+
+
+def test_intrinsics_belong_to_the_region_as_it_is_sent():
+    roi = region(x_offset=500, y_offset=100, width=300, height=200, do_rectify=True)
+    info = camera_info(
+        (900.0, 0.0, 810.0, 0.0, 890.0, 590.0, 0.0, 0.0, 1.0),
+        width=1600, height=1200, binning_x=2, binning_y=2, roi=roi,
+    )  # fmt: skip
+    (camera,) = events_from_message(INFO, info)
+    assert (camera.width, camera.height) == (150, 100)
+    assert (camera.fx, camera.fy, camera.cx, camera.cy) == (450.0, 445.0, 155.0, 245.0)
+    assert camera.sensor == Sensor(-250.0, -50.0, 800.0, 600.0)
+    assert camera.is_centered
+
+
+def test_a_region_without_a_size_is_the_whole_picture():
+    (camera,) = events_from_message(INFO, camera_info(width=640, height=480, binning_x=1))
+    assert (camera.width, camera.height, camera.sensor) == (640, 480, None)
+
+
+def test_a_camera_info_without_a_size_belongs_to_any_picture():
+    (camera,) = events_from_message(INFO, camera_info())
+    assert (camera.width, camera.height) == (None, None)
+
+
+@pytest.mark.parametrize(
+    "roi",
+    [
+        region(x_offset=400, width=300, height=480),
+        region(y_offset=480),
+        region(width=641, height=480),
+    ],
+    ids=["beyond the right", "below", "too wide"],
+)
+def test_a_region_beyond_its_picture_is_refused(roi):
+    with pytest.raises(ConfigError, match=r"region of .* of a picture of 640x480"):
+        events_from_message(INFO, camera_info(width=640, height=480, roi=roi))
+
+
 def test_ros1_names_of_the_matrices_are_understood():
     message = camera_info()
     ros1 = SimpleNamespace(
-        K=message.k, D=[0.0] * 5, binning_x=0, binning_y=0, roi=message.roi,
+        K=message.k, D=[0.0] * 5, width=640, height=480, binning_x=0, binning_y=0, roi=message.roi,
         distortion_model="plumb_bob",
     )  # fmt: skip
     (camera,) = events_from_message(INFO, ros1)

@@ -2,6 +2,7 @@
 aligned to its own size, strings and lists with a 32-bit length, strings with a closing zero."""
 
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -140,10 +141,13 @@ def test_transforms_come_back_exactly_and_static_as_told():
     [
         CameraModel(460.0, 461.0, 320.0, 240.0, (0.1, -0.2, 0.0, 0.01, 0.0), "plumb_bob"),
         CameraModel(400.0, 400.0, 320.0, 240.0, (0.1, 0.2, 0.3, 0.4), "equidistant"),
+        CameraModel(400.0, 400.0, 320.0, 240.0, (0.0,) * 4, "equidistant"),
+        CameraModel(400.0, 400.0, 320.0, 240.0, (0.1,) * 12, "thin_prism"),
     ],
-    ids=["plumb_bob", "equidistant"],
+    ids=["plumb_bob", "equidistant", "equidistant of zeros", "thin prism"],
 )
 def test_intrinsics_come_back_exactly(camera):
+    camera = replace(camera, width=640, height=480)
     info = CameraInfo(STAMP_NS, "camera", 640, 480, camera)
     assert decode(*encode(info)) == [camera]
     message = deserialize(*encode(info))

@@ -1,0 +1,142 @@
+"""Which intrinsics does this picture have? A CameraInfo's where they fit, else the parameters'."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tracker.camera import CameraModel
+from tracker.config import Config
+from tracker.errors import ConfigError
+from tracker.notes import Note, NoteKind
+
+#: The specification's camera.
+_SPECIFIED_SIZE = (640, 480)
+
+
+class PictureCamera(NamedTuple):
+    """Intrinsics of pictures of one size, and what is to be said about them."""
+
+    camera: CameraModel
+    notes: tuple[Note, ...] = ()
+
+
+class PictureCameras:
+    """Gives pictures of any size their intrinsics; remembers those of the last size.
+
+    Args:
+        config: `camera_fx` to `camera_height` serve where no CameraInfo fits.
+    """
+
+    def __init__(self, config: Config) -> None:
+        self._configured = configured_camera(config)
+        self._calibrated: CameraModel | None = None
+        self._last: PictureCamera | None = None
+
+    def calibrate(self, camera: CameraModel) -> None:
+        """Take in a CameraInfo."""
+        if camera != self._calibrated:
+            self._calibrated, self._last = camera, None
+
+    def configure(self, config: Config) -> None:
+        """Parameters that have changed replace a CameraInfo, until the next one comes."""
+        configured = configured_camera(config)
+        if configured != self._configured:
+            self._configured, self._calibrated, self._last = configured, None, None
+
+    def of(self, width: int, height: int) -> PictureCamera:
+        """The intrinsics of a picture of this size."""
+        last = self._last
+        if last is None or (last.camera.width, last.camera.height) != (width, height):
+            self._last = last = self._choose(width, height)
+        return last
+
+    def _choose(self, width: int, height: int) -> PictureCamera:
+        if self._calibrated is None:
+            return _assumed(self._configured, width, height)
+        try:
+            camera = self._calibrated.for_picture(width, height)
+        except ConfigError as error:
+            assumed = _assumed(self._configured, width, height)
+            refused = Note(
+                NoteKind.CAMERA_INFO_REFUSED,
+                f"CameraInfo unused, the configured intrinsics serve: {error}",
+            )
+            return PictureCamera(assumed.camera, (refused, *assumed.notes))
+        notes = _scaling(self._calibrated, camera, "CameraInfo's intrinsics")
+        # Before it is scaled: whether the driver has told the truth about its own size.
+        told = camera if self._calibrated.width is None else self._calibrated
+        return PictureCamera(camera, notes + _off_middle(told, "CameraInfo", _DRIVER_REMEDY))
+
+
+def configured_camera(config: Config) -> CameraModel:
+    """The intrinsics of the parameters; of no known size where `camera_width` is 0."""
+    return CameraModel(
+        config.camera_fx,
+        config.camera_fy,
+        config.camera_cx,
+        config.camera_cy,
+        width=config.camera_width or None,
+        height=config.camera_height or None,
+    )
+
+
+def _assumed(configured: CameraModel, width: int, height: int) -> PictureCamera:
+    """The configured intrinsics for a picture of any size and shape.
+
+    Where the shape differs, the longer side is supposed to show the same, as of the many cameras
+    that make wide pictures by leaving out rows, with the principal point as far from the middle.
+    """
+    told = configured
+    if configured.width is None or configured.height is None:
+        told = _of_likely_size(configured, width, height)
+    size = (told.width or width, told.height or height)
+    scale = max(width, height) / max(size)
+    camera = told.scaled(scale, scale, width, height)
+    camera = CameraModel(
+        camera.fx,
+        camera.fy,
+        camera.cx + (width - scale * size[0]) / 2,
+        camera.cy + (height - scale * size[1]) / 2,
+        width=width,
+        height=height,
+    )
+    notes = _scaling(told, camera, "configured intrinsics")
+    return PictureCamera(camera, notes + _off_middle(told, "camera_cx, camera_cy", _OWN_REMEDY))
+
+
+def _of_likely_size(configured: CameraModel, width: int, height: int) -> CameraModel:
+    """Intrinsics without a size: of 640x480, or of the picture if its middle fits them better."""
+
+    def off_middle(size: tuple[int, int]) -> float:
+        return abs(configured.cx / size[0] - 0.5) + abs(configured.cy / size[1] - 0.5)
+
+    size = min(_SPECIFIED_SIZE, (width, height), key=off_middle)
+    return configured.scaled(1.0, 1.0, *size)
+
+
+def _scaling(told: CameraModel, camera: CameraModel, what: str) -> tuple[Note, ...]:
+    if told.width is None or (told.width, told.height) == (camera.width, camera.height):
+        return ()
+    text = (
+        f"{what} scaled from {told.width}x{told.height} to {camera.width}x{camera.height}: "
+        f"fx {camera.fx:.1f}, fy {camera.fy:.1f}, cx {camera.cx:.1f}, cy {camera.cy:.1f}"
+    )
+    return (Note(NoteKind.INTRINSICS_SCALED, text),)
+
+
+def _off_middle(told: CameraModel, what: str, remedy: str) -> tuple[Note, ...]:
+    if told.is_centered:
+        return ()
+    text = (
+        f"the principal point of {what}, ({told.cx:.1f}, {told.cy:.1f}), lies far off the middle "
+        f"of the picture, ({told.middle_px[0]:.1f}, {told.middle_px[1]:.1f}): the intrinsics "
+        f"seem to belong to pictures of another size, and bearings may be wrong. {remedy}"
+    )
+    return (Note(NoteKind.PRINCIPAL_POINT_OFF, text),)
+
+
+_DRIVER_REMEDY = (
+    "Calibrate the camera at this size or mend the driver's CameraInfo (K, width, height, "
+    "binning, roi), or set use_camera_info: false and camera_fx to camera_height."
+)
+_OWN_REMEDY = "Set camera_width and camera_height to the size that they were calibrated at."
