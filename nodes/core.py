@@ -209,7 +209,7 @@ class NodeCore:
             self.refuse(Input.IMAGES, str(error))
             return
         verdict = self._images.offer(
-            WaitingImage(*header, self._steady_ns(), lambda: _image_of(message))
+            WaitingImage(*header, self._steady_ns(), lambda: self._image_of(message))
         )
         if verdict.is_refused:
             stamp_s = header.stamp_ns / 1e9
@@ -329,15 +329,14 @@ class NodeCore:
         self._last = None
         publish_nobody(stamp_ns, self._shown_in, self._publish, self._has_subscribers)
 
+    def _image_of(self, message: Encoded) -> CameraImage:
+        (image,) = decode(*message, max_pixels=self._config.picture_max_pixels)
+        assert isinstance(image, CameraImage), "the shell subscribes to images only"
+        return image
+
     def _note_reset(self, reason: str) -> None:
         self._diagnostics.resets += 1
         self._log("warning", f"Everybody is forgotten: {reason}.")
-
-
-def _image_of(message: Encoded) -> CameraImage:
-    (image,) = decode(*message)
-    assert isinstance(image, CameraImage), "the shell subscribes to images only"
-    return image
 
 
 def _greeting(config: Config) -> str:

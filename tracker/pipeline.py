@@ -182,6 +182,8 @@ class Pipeline:
 
         self.camera, camera_notes = self._cameras.of(image.width, image.height)
         self._notes += camera_notes
+        if image.remark:
+            self._note(NoteKind.BIT_DEPTH_GUESSED, image.remark)
         fixed_from_camera, is_located = self._locate_camera(image)
         scan = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
         people = scan_people(scan, self.config)

@@ -94,7 +94,13 @@ def replay(
     history = History()
     evaluation = EpisodeEvaluation()
     has_truth, frames_seen = False, 0
-    with open_recording(source, topics or Topics(), with_truth=True, stamps=stamps) as recording:
+    with open_recording(
+        source,
+        topics or Topics(),
+        with_truth=True,
+        stamps=stamps,
+        max_pixels=config.picture_max_pixels,
+    ) as recording:
         if not recording.has_images:
             if not recording.has_scans or recording.image_topics:
                 recording.require_images()

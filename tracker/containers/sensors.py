@@ -21,6 +21,7 @@ class CameraImage:
         stamp_ns: When it was taken.
         frame_id: The camera's frame; empty means the configured one.
         bgr: Shape (height, width, 3), uint8, blue-green-red.
+        remark: What had to be guessed about its encoding; empty where nothing had to be.
 
     Raises:
         ShapeError: The array is no BGR picture, or has no pixels.
@@ -30,6 +31,7 @@ class CameraImage:
     stamp_ns: int
     frame_id: str
     bgr: ImageArray
+    remark: str = ""
 
     def __post_init__(self) -> None:
         check_stamp(self.stamp_ns)

@@ -39,7 +39,10 @@ def recorded_frames(
         ModelFileError: The hand models are not there.
     """
     images = 0
-    with open_recording(source, topics or Topics(), stamps=stamps) as recording:
+    max_pixels = pipeline.config.picture_max_pixels
+    with open_recording(
+        source, topics or Topics(), stamps=stamps, max_pixels=max_pixels
+    ) as recording:
         recording.require_images()
         try:
             for log_ns, event in recording.events():

@@ -12,20 +12,28 @@ from tracker.containers import CameraImage, Scan, Truth
 from tracker.errors import ConfigError, RecordingError, ShapeError
 from tracker.geometry import RigidTransform
 from tracker.messages import types
-from tracker.messages.images import bgr_from_compressed, bgr_from_image
+from tracker.messages.images import Picture, picture_from_compressed, picture_from_image
+from tracker.messages.picture_size import MAX_PIXELS
 from tracker.transforms import StampedTransform
 
 #: What sensors, and simulations, say.
 Event: TypeAlias = CameraImage | Scan | StampedTransform | CameraModel | Truth
 
 
-def decode(type_name: str, cdr: bytes | memoryview, *, is_static: bool = False) -> list[Event]:
+def decode(
+    type_name: str,
+    cdr: bytes | memoryview,
+    *,
+    is_static: bool = False,
+    max_pixels: int = MAX_PIXELS,
+) -> list[Event]:
     """Read one serialized message.
 
     Args:
         type_name: `package/msg/Name`; one of `DECODABLE`.
         cdr: The serialized message with its encapsulation.
         is_static: Transforms hold at every time (they came on /tf_static).
+        max_pixels: A larger picture is refused before it is decoded.
 
     Returns:
         One event; any number where the message carries transforms.
@@ -36,16 +44,22 @@ def decode(type_name: str, cdr: bytes | memoryview, *, is_static: bool = False) 
         ClockError: A stamp is negative.
         ConfigError: Camera intrinsics make no sense.
     """
-    return events_from_message(type_name, types.deserialize(type_name, cdr), is_static=is_static)
+    message = types.deserialize(type_name, cdr)
+    return events_from_message(type_name, message, is_static=is_static, max_pixels=max_pixels)
 
 
-def events_from_message(type_name: str, message: Any, *, is_static: bool = False) -> list[Event]:
+def events_from_message(
+    type_name: str, message: Any, *, is_static: bool = False, max_pixels: int = MAX_PIXELS
+) -> list[Event]:
     """Read one message object, of rclpy or anything with the same field names.
 
     Args, returns and raises as `decode`.
     """
     if type_name in (types.TF_MESSAGE, types.TF_MESSAGE_ROS1):
         return list(transforms_from_message(message, is_static=is_static))
+    convert_image = _IMAGES.get(type_name)
+    if convert_image is not None:
+        return [convert_image(message, max_pixels)]
     convert = _SINGLE.get(type_name)
     if convert is None:
         raise RecordingError(
@@ -55,16 +69,14 @@ def events_from_message(type_name: str, message: Any, *, is_static: bool = False
     return [convert(message)]
 
 
-def image_from_message(message: Any) -> CameraImage:
+def image_from_message(message: Any, max_pixels: int = MAX_PIXELS) -> CameraImage:
     """The picture of a sensor_msgs/Image."""
-    return CameraImage(stamp_ns(message.header), message.header.frame_id, bgr_from_image(message))
+    return _camera_image(message, picture_from_image(message, max_pixels))
 
 
-def image_from_compressed(message: Any) -> CameraImage:
+def image_from_compressed(message: Any, max_pixels: int = MAX_PIXELS) -> CameraImage:
     """The picture of a sensor_msgs/CompressedImage."""
-    return CameraImage(
-        stamp_ns(message.header), message.header.frame_id, bgr_from_compressed(message)
-    )
+    return _camera_image(message, picture_from_compressed(message, max_pixels))
 
 
 def scan_from_message(message: Any) -> Scan:
@@ -164,6 +176,12 @@ def stamp_ns(header: Any) -> int:
     return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
 
 
+def _camera_image(message: Any, picture: Picture) -> CameraImage:
+    return CameraImage(
+        stamp_ns(message.header), message.header.frame_id, picture.bgr, picture.remark
+    )
+
+
 def _check_beams(scan: Scan, angle_max_rad: float) -> None:
     """Angles and ranges must tell of the same turn; drivers differ by a beam at the seam."""
     came = len(scan.ranges_m)
@@ -177,13 +195,15 @@ def _check_beams(scan: Scan, angle_max_rad: float) -> None:
         )
 
 
-_SINGLE: dict[str, Callable[[Any], Event]] = {
+_IMAGES: dict[str, Callable[[Any, int], Event]] = {
     types.IMAGE: image_from_message,
     types.COMPRESSED_IMAGE: image_from_compressed,
+}
+_SINGLE: dict[str, Callable[[Any], Event]] = {
     types.LASER_SCAN: scan_from_message,
     types.CAMERA_INFO: camera_from_message,
     types.DETECTIONS: truth_from_message,
 }
 
 #: Type names that `decode` understands.
-DECODABLE = frozenset(_SINGLE) | {types.TF_MESSAGE, types.TF_MESSAGE_ROS1}
+DECODABLE = frozenset(_SINGLE) | frozenset(_IMAGES) | {types.TF_MESSAGE, types.TF_MESSAGE_ROS1}

@@ -88,10 +88,12 @@ class BagSource:
                 ) from error
             yield RawMessage(connection.topic, connection.msgtype, log_ns, data)
 
-    def read(self, message: RawMessage, *, is_static: bool) -> list[Event]:
+    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
         """As `Source.read`."""
         if not self._is_ros1:
-            return decode(message.type_name, message.data, is_static=is_static)
+            return decode(
+                message.type_name, message.data, is_static=is_static, max_pixels=max_pixels
+            )
         try:
             said = _ros1_typestore().deserialize_ros1(message.data, message.type_name)
         except MALFORMED as error:
@@ -99,7 +101,9 @@ class BagSource:
                 f"{len(message.data)} bytes came as ROS 1 {message.type_name}; they do not hold "
                 f"one ({error})."
             ) from error
-        return events_from_message(message.type_name, said, is_static=is_static)
+        return events_from_message(
+            message.type_name, said, is_static=is_static, max_pixels=max_pixels
+        )
 
     def close(self) -> None:
         """As `Source.close`."""

@@ -85,9 +85,9 @@ class CutMcapSource:
             if message.topic in topics:
                 yield message
 
-    def read(self, message: RawMessage, *, is_static: bool) -> list[Event]:
+    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
         """As `Source.read`."""
-        return decode(message.type_name, message.data, is_static=is_static)
+        return decode(message.type_name, message.data, is_static=is_static, max_pixels=max_pixels)
 
     def close(self) -> None:
         """Nothing stays open between calls."""

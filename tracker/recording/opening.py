@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tracker.errors import RecordingError
+from tracker.messages.picture_size import MAX_PIXELS
 from tracker.recording.bags import bag_files, open_bag
 from tracker.recording.pictures import (
     PHOTO_SUFFIXES,
@@ -26,6 +27,7 @@ def open_recording(
     with_truth: bool = False,
     stamps: str = "header",
     photo_period_s: float = 0.1,
+    max_pixels: int = MAX_PIXELS,
 ) -> Recording:
     """Open a recording for reading; use it in a `with` block.
 
@@ -37,21 +39,24 @@ def open_recording(
         stamps: Which time the data carry: `header`, the messages' own, or `log`, that of the
             recording.
         photo_period_s: From one photo to the next.
+        max_pixels: Larger pictures are passed over before they are decoded, and counted.
 
     Raises:
         RecordingError: There is no such file, or it is no recording, or cannot be read at all; or
             `stamps` is neither.
     """
     path, topics = Path(path), topics or Topics()
-    source = _open_source(path, topics.image, photo_period_s)
+    source = _open_source(path, topics.image, photo_period_s, max_pixels)
     try:
-        return Recording(path, source, topics, with_truth=with_truth, stamps=stamps)
+        return Recording(
+            path, source, topics, with_truth=with_truth, stamps=stamps, max_pixels=max_pixels
+        )
     except RecordingError:
         source.close()
         raise
 
 
-def _open_source(path: Path, image_topic: str, photo_period_s: float) -> Source:
+def _open_source(path: Path, image_topic: str, photo_period_s: float, max_pixels: int) -> Source:
     if not path.exists():
         raise RecordingError(f"{path}: there is no such file or folder; check the name.")
     suffix = path.suffix.lower()
@@ -68,7 +73,7 @@ def _open_source(path: Path, image_topic: str, photo_period_s: float) -> Source:
     if suffix in _BAG_SUFFIXES:
         return open_bag(path)
     if suffix in VIDEO_SUFFIXES:
-        return VideoSource(path, image_topic)
+        return VideoSource(path, image_topic, max_pixels)
     if suffix in PHOTO_SUFFIXES:
         return PhotoSource([path], image_topic, photo_period_s)
     known = sorted(_BAG_SUFFIXES | VIDEO_SUFFIXES | PHOTO_SUFFIXES)

@@ -9,11 +9,13 @@ from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from tracker.containers import CameraImage, ImageArray
 from tracker.errors import RecordingError
 from tracker.messages import Event
-from tracker.messages.images import bgr_from_file_bytes
+from tracker.messages.images import Picture, picture_from_file
+from tracker.messages.picture_size import MAX_PIXELS, PictureSize, check_pixels, picture_size
 from tracker.recording.sources import RawMessage, TopicInfo, unreadable
 
 VIDEO_SUFFIXES = frozenset({".mp4", ".avi", ".mkv", ".webm", ".mov", ".m4v"})
@@ -25,6 +27,9 @@ _MISSING_SHARE = 0.02
 
 _FALLBACK_FPS = 30.0
 
+#: Larger files are not read into memory; 50 million pixels of 16 bits take 300 MB uncompressed.
+_PHOTO_MAX_BYTES = 500_000_000
+
 
 class VideoSource:
     """The frames of a video file on one topic.
@@ -32,21 +37,28 @@ class VideoSource:
     Args:
         path: A file that OpenCV can decode.
         topic: The topic they appear on.
+        max_pixels: Larger frames are not decoded.
 
     Raises:
-        RecordingError: Not one frame can be decoded.
+        RecordingError: Not one frame can be decoded, or frames are too large.
     """
 
     kind = "video"
 
-    def __init__(self, path: Path, topic: str) -> None:
+    def __init__(self, path: Path, topic: str, max_pixels: int = MAX_PIXELS) -> None:
         self._path, self._topic = path, topic
         self.notes: list[str] = []
         capture = self._open()
         fps = capture.get(cv2.CAP_PROP_FPS)
         self._count = max(int(capture.get(cv2.CAP_PROP_FRAME_COUNT)), 0)
-        readable, _ = capture.read()
-        capture.release()
+        size = PictureSize(
+            int(capture.get(cv2.CAP_PROP_FRAME_WIDTH)), int(capture.get(cv2.CAP_PROP_FRAME_HEIGHT))
+        )
+        try:
+            check_pixels(size, max_pixels, f"{path}: the video")
+            readable, _ = capture.read()
+        finally:
+            capture.release()
         if not readable:
             raise unreadable(path, "not one frame can be decoded", _VIDEO_REMEDY)
         self._is_fps_known = bool(np.isfinite(fps) and 0.1 < fps < 1000.0)
@@ -81,7 +93,7 @@ class VideoSource:
                 f"({stamp_ns / 1e9:.3f} s). What came before was read. {_VIDEO_REMEDY}"
             )
 
-    def read(self, message: RawMessage, *, is_static: bool) -> list[Event]:
+    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
         """As `Source.read`."""
         return [message.data]
 
@@ -122,7 +134,7 @@ class PhotoSource:
         self.notes: list[str] = []
         self.topics = {topic: TopicInfo("photos", len(paths))}
         self.start_ns, self.end_ns = 0, (len(paths) - 1) * self._period_ns
-        if not any(_is_photo(path) for path in self._paths):
+        if not any(_has_photo_header(path) for path in self._paths):
             raise unreadable(paths[0].parent, "not one photo can be decoded", "Look at the files.")
 
     def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
@@ -131,33 +143,43 @@ class PhotoSource:
             for number, path in enumerate(self._paths):
                 yield RawMessage(self._topic, "", number * self._period_ns, path)
 
-    def read(self, message: RawMessage, *, is_static: bool) -> list[Event]:
+    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
         """As `Source.read`."""
-        return [_image(message.log_ns, read_photo(message.data))]
+        picture = _read_picture(message.data, max_pixels)
+        return [CameraImage(message.log_ns, "", picture.bgr, picture.remark)]
 
     def close(self) -> None:
         """Nothing stays open between calls."""
 
 
-def read_photo(path: Path) -> ImageArray:
+def read_photo(path: Path, max_pixels: int = MAX_PIXELS) -> ImageArray:
     """One photo, shape (height, width, 3), BGR.
 
     Raises:
-        RecordingError: It cannot be read or decoded.
+        RecordingError: It cannot be read or decoded, or is too large.
     """
+    return _read_picture(path, max_pixels).bgr
+
+
+def _read_picture(path: Path, max_pixels: int) -> Picture:
+    return picture_from_file(_bytes_of(path), f"{path}: the photo", max_pixels)
+
+
+def _bytes_of(path: Path) -> NDArray[np.uint8]:
     try:
-        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
+        size = path.stat().st_size
+        if size > _PHOTO_MAX_BYTES:
+            raise RecordingError(f"{path}: has {size} bytes; no photo has that many.")
+        return np.frombuffer(path.read_bytes(), dtype=np.uint8)
     except OSError as error:
         raise unreadable(path, error.strerror, "Check its rights.") from error
-    return bgr_from_file_bytes(data, f"{path}: the photo")
 
 
-def _is_photo(path: Path) -> bool:
+def _has_photo_header(path: Path) -> bool:
     try:
-        read_photo(path)
+        return picture_size(_bytes_of(path)) is not None
     except RecordingError:
         return False
-    return True
 
 
 def photos_in(folder: Path) -> list[Path]:

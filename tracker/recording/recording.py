@@ -13,6 +13,7 @@ from tracker.closing import Closing
 from tracker.containers import CameraImage, Scan
 from tracker.errors import RecordingError, TrackerError
 from tracker.messages import DECODABLE, Event, types
+from tracker.messages.picture_size import MAX_PIXELS
 from tracker.recording.sources import RawMessage, Source, TopicInfo, seconds_into
 
 #: Messages whose stamps are compared with the log's time, and the offset that is worth a word.
@@ -93,6 +94,7 @@ class Recording(Closing):
         *,
         with_truth: bool,
         stamps: str,
+        max_pixels: int = MAX_PIXELS,
     ) -> None:
         if stamps not in ("header", "log"):
             raise RecordingError(f"stamps={stamps!r} came; needed is header or log.")
@@ -100,6 +102,7 @@ class Recording(Closing):
         self.skipped: dict[str, Skipped] = {}
         self._source = source
         self._stamps = stamps
+        self._max_pixels = max_pixels
         self._with_truth = with_truth
         duration_s = (source.end_ns - source.start_ns) / 1e9
         self.summary = Summary(source.kind, source.start_ns, duration_s, dict(source.topics))
@@ -222,7 +225,7 @@ class Recording(Closing):
 
     def _read(self, message: RawMessage, *, is_static: bool = False) -> list[Event]:
         try:
-            events = self._source.read(message, is_static=is_static)
+            events = self._source.read(message, is_static=is_static, max_pixels=self._max_pixels)
         except TrackerError as error:
             self._skip(message, str(error))
             return []
@@ -276,7 +279,9 @@ class Recording(Closing):
                 self._used() & {self.read_topics.image, self.read_topics.scan}
             ):
                 with suppress(TrackerError):  # counted by `events`
-                    for event in self._source.read(message, is_static=False):
+                    for event in self._source.read(
+                        message, is_static=False, max_pixels=self._max_pixels
+                    ):
                         if isinstance(event, CameraImage | Scan):
                             offsets_s.append((event.stamp_ns - message.log_ns) / 1e9)
                 if len(offsets_s) >= _STAMPS_COMPARED:

@@ -58,8 +58,8 @@ class Source(Protocol):
             RecordingError: The file is damaged; everything before the damage has been yielded.
         """
 
-    def read(self, message: RawMessage, *, is_static: bool) -> list[Event]:
-        """What one message says.
+    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+        """What one message says; pictures of up to `max_pixels`.
 
         Raises:
             TrackerError: Nothing that makes sense.
@@ -90,9 +90,9 @@ class Row:
         for part in self._parts:
             yield from part.messages(topics)
 
-    def read(self, message: RawMessage, *, is_static: bool) -> list[Event]:
+    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
         """As `Source.read`; the parts are of one kind."""
-        return self._parts[0].read(message, is_static=is_static)
+        return self._parts[0].read(message, is_static=is_static, max_pixels=max_pixels)
 
     def close(self) -> None:
         """As `Source.close`."""
