@@ -87,7 +87,9 @@ class VideoSource:
                 number += 1
         finally:
             capture.release()
-        if self._count - number > max(_MISSING_SHARE * self._count, 3):
+        # A rate that varies makes a container's count a guess; the time tells how far it went.
+        reached = max(number, round(stamp_ns / 1e9 * self._fps) + 1)
+        if self._count - reached > max(_MISSING_SHARE * self._count, 3):
             raise RecordingError(
                 f"{self._path}: cannot be decoded beyond frame {number} of {self._count} "
                 f"({stamp_ns / 1e9:.3f} s). What came before was read. {_VIDEO_REMEDY}"

@@ -1,3 +1,7 @@
+import shutil
+import struct
+import subprocess
+
 import cv2
 import numpy as np
 import pytest
@@ -42,6 +46,81 @@ def test_videos_are_stamped_from_zero_at_their_frame_rate(tmp_path, name, codec)
     np.testing.assert_allclose(stamps_s, np.arange(30) / 15.0, atol=0.002)
     assert events[0][1].bgr.shape == (64, 96, 3)
     assert events[20][1].bgr[60, 5].mean() > events[2][1].bgr[60, 5].mean() + 50
+
+
+@pytest.mark.parametrize(
+    ("matrix", "size", "corner"),
+    [
+        ((0, 1, -1, 0), (64, 96), "bottom"),
+        ((-1, 0, 0, -1), (96, 64), "left"),
+        ((0, -1, 1, 0), (64, 96), "top"),
+    ],
+    ids=["a quarter turn", "half a turn", "three quarters"],
+)
+def test_a_video_of_a_turned_phone_is_upright(tmp_path, matrix, size, corner):
+    path = tmp_path / "phone.mp4"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), 15.0, (96, 64))
+    frame = np.zeros((64, 96, 3), np.uint8)
+    frame[:, 72:] = 255  # on the right before it is turned
+    for _ in range(5):
+        writer.write(frame)
+    writer.release()
+    content = bytearray(path.read_bytes())
+    at = content.index(b"tkhd") + 44  # the matrix of the track's header
+    a, b, c, d = (number << 16 for number in matrix)
+    content[at : at + 36] = struct.pack(">9i", a, b, 0, c, d, 0, 0, 0, 1 << 30)
+    path.write_bytes(content)
+    with open_recording(path) as recording:
+        bgr = next(recording.events())[1].bgr
+    assert bgr.shape[1::-1] == size
+    bright = {"left": bgr[:, :10], "top": bgr[:10], "bottom": bgr[-10:]}[corner]
+    assert bright.min() > 200
+    assert bgr.mean() == pytest.approx(64, abs=10)
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="needs ffmpeg to make the video")
+@pytest.mark.parametrize("suffix", ["mp4", "mkv", "avi"])
+def test_frames_of_a_rate_that_varies_keep_their_own_times(tmp_path, suffix):
+    write_video(tmp_path / "steady.mp4", "mp4v", count=30, fps=10.0)
+    path = tmp_path / f"varies.{suffix}"
+    codec = "mjpeg" if suffix == "avi" else "mpeg4"
+    slower = "setpts='if(lt(N,15),N/10,1.5+(N-15)/2.5)/TB'"
+    subprocess.run(
+        ["ffmpeg", "-v", "error", "-i", tmp_path / "steady.mp4", "-vf", slower, "-vsync", "vfr",
+         "-c:v", codec, path],
+        check=True,
+    )  # fmt: skip
+    with open_recording(path) as recording:
+        stamps_s = np.array([log_ns for log_ns, _ in recording.events()]) / 1e9
+    expected_s = [*(np.arange(15) / 10), *(1.5 + np.arange(15) / 2.5)]
+    np.testing.assert_allclose(stamps_s, expected_s, atol=0.011)
+
+
+def test_a_photo_beyond_the_limit_is_counted_and_the_others_are_read(tmp_path):
+    for name, width in (("a.png", 40), ("b.jpg", 60), ("c.png", 41)):
+        cv2.imwrite(str(tmp_path / name), np.zeros((50, width, 3), np.uint8))
+    with open_recording(tmp_path, max_pixels=50 * 41) as recording:
+        widths = [image.width for _, image in recording.events()]
+        (line,) = recording.skipped_lines()
+    assert widths == [40, 41]
+    assert "60x50 pixels" in line
+    assert "picture_max_pixels" in line
+
+
+def test_a_video_of_too_many_pixels_is_refused_before_its_first_frame(tmp_path):
+    write_video(tmp_path / "a.avi", "MJPG")
+    with pytest.raises(RecordingError, match=r"a\.avi.*96x64 pixels; at most 6143"):
+        open_recording(tmp_path / "a.avi", max_pixels=96 * 64 - 1)
+
+
+def test_a_photo_of_16_bits_is_as_bright_as_its_sensor_saw(tmp_path):
+    values = np.full((20, 30), 700, np.uint16)
+    values[3, 3] = 1023
+    cv2.imwrite(str(tmp_path / "a.png"), values)
+    with open_recording(tmp_path / "a.png") as recording:
+        ((_, image),) = recording.events()
+    assert image.bgr[10, 10].tolist() == [175, 175, 175]
+    assert "10 bits" in image.remark
 
 
 def test_a_video_that_breaks_names_the_frame(tmp_path):
