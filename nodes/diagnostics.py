@@ -190,6 +190,10 @@ class Diagnostics:
     def _judge(self, item: Input) -> tuple[int, str]:
         seen, level = self._inputs[item], _WATCHED[item]
         if item is Input.CAMERA_INFO:  # one is enough, and many drivers send no more
+            notes = self._last.notes if self._last is not None else ()
+            for note in notes:
+                if note.kind in (NoteKind.CAMERA_INFO_REFUSED, NoteKind.PRINCIPAL_POINT_OFF):
+                    return WARN, note.text
             words = "missing: camera_fx, camera_fy, camera_cx and camera_cy serve"
             return OK, "has come" if seen.count else words
         if item is Input.TRANSFORMS:

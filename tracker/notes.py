@@ -22,6 +22,7 @@ class NoteKind(Enum):
     INTRINSICS_SCALED = "intrinsics scaled"
     PRINCIPAL_POINT_OFF = "principal point off the middle"
     BIT_DEPTH_GUESSED = "bit depth guessed"
+    HAND_BEYOND_LENS = "hand beyond the lens"
 
     @property
     def is_fault(self) -> bool:
@@ -48,6 +49,7 @@ _REMARKS = frozenset(
         NoteKind.INTRINSICS_SCALED,
         NoteKind.PRINCIPAL_POINT_OFF,
         NoteKind.BIT_DEPTH_GUESSED,
+        NoteKind.HAND_BEYOND_LENS,
     }
 )
 _WITHOUT_SCAN = frozenset(

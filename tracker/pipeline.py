@@ -207,6 +207,11 @@ class Pipeline:
             background=self._background if self.config.background_after_s > 0.0 else None,
             people=people,
         )
+        beyond = int(np.isnan(measurements.values[:, 0]).sum())
+        if beyond:
+            end_deg = np.rad2deg(self.camera.lens.max_off_axis_rad)
+            text = f"{beyond} hands beyond the lens's range of {end_deg:.0f} degrees: no bearing"
+            self._note(NoteKind.HAND_BEYOND_LENS, text)
         if scan is not None:
             self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
         if self.config.appearance_weight and hands.raised.any():

@@ -448,3 +448,32 @@ def test_the_view_of_a_rolled_camera_is_that_of_its_upright_picture(roll_deg, mo
     play(pipeline, 1, scan=None)
     half_px = 240.0 if roll_deg == 90.0 else 320.0
     assert views[0].horizontal_fov_rad == pytest.approx(2 * np.arctan(half_px / 460.0), abs=1e-3)
+
+
+def test_a_picture_of_another_size_gets_intrinsics_of_its_size():
+    pipeline = Pipeline(Config(), SeenHands((1180, 400)))
+    image = CameraImage(START_NS, "camera_link", np.zeros((960, 1280, 3), np.uint8))
+    result = pipeline.process(image)
+    # (1180 - 640) / 920 to the right.
+    assert result.hands.wrist_px[0].tolist() == [1180, 400]
+    assert result.measurements.values[0, 0] == pytest.approx(-np.arctan(540 / 920))
+    assert NoteKind.INTRINSICS_SCALED in [note.kind for note in result.notes]
+
+
+def test_a_hand_beyond_the_lens_s_range_is_told_and_nobody_is_invented():
+    pipeline = Pipeline(Config(), SeenHands((10, 200)))
+    lens = (-0.5, 0.1, 0.0, 0.0)
+    pipeline.set_camera(CameraModel(300.0, 300.0, 320.0, 240.0, lens, "plumb_bob", 640, 480))
+    for number in range(4):
+        image = CameraImage(
+            START_NS + number * 10**8, "camera_link", np.zeros((480, 640, 3), np.uint8)
+        )
+        result = pipeline.process(image)
+    assert NoteKind.HAND_BEYOND_LENS in [note.kind for note in result.notes]
+    assert len(result.tracks) == 0
+
+
+def test_a_remark_about_an_image_becomes_a_note():
+    image = CameraImage(START_NS, "camera_link", np.zeros((480, 640, 3), np.uint8), "a guess")
+    result = Pipeline(Config(), SeenHands((320, 100))).process(image)
+    assert "a guess" in [note.text for note in result.notes]

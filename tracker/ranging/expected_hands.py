@@ -7,6 +7,7 @@ import numpy as np
 from tracker.camera import CameraModel
 from tracker.containers import FloatArray
 from tracker.geometry import RigidTransform
+from tracker.lens import LensKind
 
 #: Above the floor: from the raised hand of somebody who sits to that of somebody tall who stands.
 HEIGHTS_M = (0.9, 2.2)
@@ -21,8 +22,6 @@ def expected_hands(
 ) -> FloatArray:
     """Project the space around people's heads and shoulders into the picture.
 
-    Lens distortion is left aside, since the windows are wider than it bends.
-
     Args:
         xy_m: Shape (N, 2): people in the fixed frame, whose z is 0 on the floor.
         camera: Intrinsics of the full image.
@@ -36,15 +35,16 @@ def expected_hands(
     middle_m = np.full((len(xy_m), 3), sum(HEIGHTS_M) / 2)
     middle_m[:, :2] = xy_m
     ahead, left, up = camera_from_fixed.apply(middle_m).T
-    in_front = ahead > _NEAR_M
-    ahead, left, up = ahead[in_front], left[in_front], up[in_front]
+    sees_aside = camera.lens.kind is LensKind.FISHEYE
+    in_front = (np.hypot(ahead, left) if sees_aside else ahead) > _NEAR_M
     half_height_m = (HEIGHTS_M[1] - HEIGHTS_M[0]) / 2
-    return np.stack(
-        [
-            camera.cx - camera.fx * (left + BESIDE_M) / ahead,
-            camera.cy - camera.fy * (up + half_height_m) / ahead,
-            camera.cx - camera.fx * (left - BESIDE_M) / ahead,
-            camera.cy - camera.fy * (up - half_height_m) / ahead,
-        ],
-        axis=-1,
-    )
+    corners_m = [
+        np.stack([ahead, left + aside, up + above], axis=-1)[in_front]
+        for aside in (-BESIDE_M, BESIDE_M)
+        for above in (-half_height_m, half_height_m)
+    ]
+    corners_px = np.stack([camera.pixels(corner) for corner in corners_m], axis=1)
+    is_seen = np.isfinite(corners_px)
+    first = np.min(corners_px, axis=1, where=is_seen, initial=np.inf)
+    last = np.max(corners_px, axis=1, where=is_seen, initial=-np.inf)
+    return np.concatenate([first, last], axis=-1)[is_seen.any(axis=(1, 2))]

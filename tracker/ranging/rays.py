@@ -25,7 +25,7 @@ class HandRays:
 
     Attributes:
         origin: x_m, y_m, yaw_rad of the camera in the fixed frame.
-        bearing_rad: Shape (H,), from the camera's yaw, counter-clockwise.
+        bearing_rad: Shape (H,), from the camera's yaw, counter-clockwise; NaN where unknown.
         bearing_std_rad: Shape (H,), of the pixel noise alone.
         roll_rad: Of the camera: what is level in the room is turned so far in the picture,
             counter-clockwise.
@@ -53,18 +53,38 @@ def hand_rays(
         camera: Intrinsics of the full image.
         fixed_from_camera: The camera with body axes (x forward) in the fixed frame; `body_pose`.
         config: `bearing_convention` and the wrist's noise, `wrist_noise_px`.
+
+    Returns:
+        NaN for hands beyond the lens's range, whose direction nobody knows.
     """
-    rays = camera.rays(np.where(hands.is_owned[:, None], hands.torso_px, hands.wrist_px))
-    level = fixed_from_camera.rotate(rays)
+    pixels = np.where(hands.is_owned[:, None], hands.torso_px, hands.wrist_px)
     origin = fixed_from_camera.planar
-    bearing = normalize_angle(np.arctan2(level[:, 1], level[:, 0]) - origin[2])
+    bearing = _bearing_rad(pixels, camera, fixed_from_camera)
+    noise_rad = wrist_noise_px(hands.length_px, config) * _turn_per_pixel_rad(
+        pixels, camera, fixed_from_camera
+    )
     if config.bearing_convention == "spec":
         bearing = -bearing
-    # d(bearing) / d(column) of a pinhole is cos^2 / fx; a ray that climbs turns 1 / level faster.
-    level_share = np.maximum(np.hypot(level[:, 0], level[:, 1]), 0.1)
-    noise_px = wrist_noise_px(hands.length_px, config)
-    std = noise_px / camera.fx * np.cos(bearing) ** 2 / level_share
-    return HandRays(origin, bearing, np.maximum(std, 1e-4), fixed_from_camera.roll_rad)
+    return HandRays(origin, bearing, np.maximum(noise_rad, 1e-4), fixed_from_camera.roll_rad)
+
+
+def _bearing_rad(
+    pixels: FloatArray, camera: CameraModel, fixed_from_camera: RigidTransform
+) -> FloatArray:
+    """Level directions of pixels from the camera's yaw, shape (H,)."""
+    level = fixed_from_camera.rotate(camera.rays(pixels))
+    return normalize_angle(np.arctan2(level[:, 1], level[:, 0]) - fixed_from_camera.yaw_rad)
+
+
+def _turn_per_pixel_rad(
+    pixels: FloatArray, camera: CameraModel, fixed_from_camera: RigidTransform
+) -> FloatArray:
+    """How far a pixel of noise turns the bearing, shape (H,); cos^2 / fx for a level pinhole."""
+    turns = []
+    for half in (np.array([0.5, 0.0]), np.array([0.0, 0.5])):
+        ends = (_bearing_rad(pixels + step, camera, fixed_from_camera) for step in (half, -half))
+        turns.append(normalize_angle(np.subtract(*ends)))
+    return np.hypot(*turns)
 
 
 def wrist_noise_px(length_px: FloatArray, config: Config) -> FloatArray:

@@ -43,3 +43,18 @@ def test_a_camera_that_looks_up_sees_people_lower():
     (tilted,) = expected_hands(np.array([[3.0, 0.0]]), CAMERA, up)
     (level,) = expected_hands(np.array([[3.0, 0.0]]), CAMERA, AT_HEIGHT)
     assert tilted[1] > level[1] + 100
+
+
+def test_a_fisheye_has_windows_for_people_beside_and_behind_it():
+    fisheye = CameraModel(200.0, 200.0, 400.0, 300.0, (0.0,) * 4, "equidistant")
+    people = np.array([[0.0, 2.0], [-0.7, -2.0]])
+    windows = expected_hands(people, fisheye, AT_HEIGHT)
+    hands = np.column_stack([people, [1.6, 1.6]]) - [0.0, 0.0, 1.2]
+    for window, (column, row) in zip(windows, fisheye.pixels(hands), strict=True):
+        assert window[0] < column < window[2]
+        assert window[1] < row < window[3]
+
+
+def test_nobody_beyond_the_lens_s_range_has_a_window():
+    barrel = CameraModel(300.0, 300.0, 320.0, 240.0, (-0.5, 0.1, 0.0, 0.0), "plumb_bob")
+    assert len(expected_hands(np.array([[1.0, 4.0], [2.0, 0.0]]), barrel, AT_HEIGHT)) == 1

@@ -93,3 +93,16 @@ def test_where_a_torso_is_known_the_ray_goes_there():
     hands = replace(hands_at((540, 100), (540, 100)), torso_px=[(320, 200), (np.nan, np.nan)])
     rays = hand_rays(hands, CAMERA, RigidTransform(), Config())
     assert np.degrees(rays.bearing_rad) == pytest.approx([0.0, -25.5600], abs=1e-3)
+
+
+def test_pixel_noise_at_the_edge_of_a_fisheye_is_as_in_its_middle():
+    fisheye = CameraModel(200.0, 200.0, 320.0, 240.0, (0.0,) * 4, "equidistant")
+    rays = hand_rays(hands_at((320, 240), (20, 240)), fisheye, RigidTransform(), Config())
+    assert rays.bearing_rad == pytest.approx([0.0, 1.5])
+    assert rays.bearing_std_rad[1] == pytest.approx(rays.bearing_std_rad[0], rel=1e-3)
+
+
+def test_a_hand_beyond_the_lens_s_range_has_no_bearing():
+    barrel = CameraModel(300.0, 300.0, 320.0, 240.0, (-0.5, 0.1, 0.0, 0.0), "plumb_bob")
+    rays = hand_rays(hands_at((320, 240), (5, 240)), barrel, RigidTransform(), Config())
+    assert np.isnan(rays.bearing_rad).tolist() == [False, True]
