@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +32,15 @@ class Sensor(NamedTuple):
     height_px: float
 
 
+class Pinhole(NamedTuple):
+    """Intrinsics of a picture whose distortion has been taken out."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+
 @dataclass(frozen=True, slots=True)
 class CameraModel:
     """Intrinsics of pictures of one size.
@@ -46,6 +55,7 @@ class CameraModel:
         width: Columns of the picture they belong to; None where nobody knows.
         height: Its rows; None where nobody knows.
         sensor: Where the picture is a region of the sensor's, that whole picture.
+        rectified: The intrinsics of the picture once it is rectified; None where nobody knows.
 
     Raises:
         ConfigError: A focal length is not positive, a number not finite, the distortion unknown.
@@ -60,6 +70,7 @@ class CameraModel:
     width: int | None = None
     height: int | None = None
     sensor: Sensor | None = None
+    rectified: Pinhole | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         numbers = (self.fx, self.fy, self.cx, self.cy, *self.distortion)
@@ -127,6 +138,22 @@ class CameraModel:
             width=width,
             height=height,
             sensor=sensor,
+            rectified=None,
+        )
+
+    def for_rectified(self) -> CameraModel:
+        """The intrinsics of the same picture after image_proc has taken its distortion out.
+
+        Raises:
+            ConfigError: Nobody knows them.
+        """
+        if self.rectified is None:
+            raise ConfigError(
+                "A CameraInfo without P came; it tells how images are rectified. Calibrate the "
+                "camera, or set images_rectified: false."
+            )
+        return CameraModel(
+            *self.rectified, width=self.width, height=self.height, sensor=self.sensor
         )
 
     @property

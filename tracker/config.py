@@ -142,6 +142,11 @@ class Config(BaseModel):
         True, "Take intrinsics and distortion from CameraInfo when it comes.",
         group="frames",
     )  # fmt: skip
+    images_rectified: bool = _parameter(
+        False, "The images are rectified (image_rect): of a CameraInfo P holds, without "
+        "distortion, instead of K with it.",
+        group="frames",
+    )  # fmt: skip
     bearing_convention: Literal["rep103", "spec"] = _parameter(
         "rep103", "Sign of the bearing: rep103 (left is positive) or spec (the original's, right "
         "is positive, for robots whose frames were built around it).",

@@ -24,11 +24,12 @@ class PictureCameras:
     """Gives pictures of any size their intrinsics; remembers those of the last size.
 
     Args:
-        config: `camera_fx` to `camera_height` serve where no CameraInfo fits.
+        config: `camera_fx` to `camera_height` serve where no CameraInfo fits; `images_rectified`.
     """
 
     def __init__(self, config: Config) -> None:
         self._configured = configured_camera(config)
+        self._is_rectified = config.images_rectified
         self._calibrated: CameraModel | None = None
         self._last: PictureCamera | None = None
 
@@ -51,10 +52,12 @@ class PictureCameras:
         return last
 
     def _choose(self, width: int, height: int) -> PictureCamera:
-        if self._calibrated is None:
+        told = self._calibrated
+        if told is None:
             return _assumed(self._configured, width, height)
         try:
-            camera = self._calibrated.for_picture(width, height)
+            told = told.for_rectified() if self._is_rectified else told
+            camera = told.for_picture(width, height)
         except ConfigError as error:
             assumed = _assumed(self._configured, width, height)
             refused = Note(
@@ -62,9 +65,9 @@ class PictureCameras:
                 f"CameraInfo unused, the configured intrinsics serve: {error}",
             )
             return PictureCamera(assumed.camera, (refused, *assumed.notes))
-        notes = _scaling(self._calibrated, camera, "CameraInfo's intrinsics")
+        notes = _scaling(told, camera, "CameraInfo's intrinsics")
         # Before it is scaled: whether the driver has told the truth about its own size.
-        told = camera if self._calibrated.width is None else self._calibrated
+        told = camera if told.width is None else told
         return PictureCamera(camera, notes + _off_middle(told, "CameraInfo", _DRIVER_REMEDY))
 
 

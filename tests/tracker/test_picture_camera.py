@@ -1,6 +1,6 @@
 import pytest
 
-from tracker.camera import CameraModel
+from tracker.camera import CameraModel, Pinhole
 from tracker.config import Config
 from tracker.notes import NoteKind
 from tracker.picture_camera import PictureCameras
@@ -110,3 +110,23 @@ def test_parameters_that_change_serve_until_the_next_camera_info():
     assert cameras.of(640, 480).camera.fx == 600.0
     cameras.configure(Config(camera_fx=470.0))
     assert cameras.of(640, 480).camera.fx == 470.0
+
+
+def test_rectified_images_have_the_intrinsics_of_their_own():
+    lens = (-0.3, 0.1, 0.0, 0.0, 0.0)
+    rectified = Pinhole(380.0, 381.0, 330.0, 236.0)
+    info = CameraModel(460.0, 460.0, 320.0, 240.0, lens, "plumb_bob", 640, 480, None, rectified)
+    cameras = PictureCameras(Config(images_rectified=True))
+    cameras.calibrate(info)
+    camera, notes = cameras.of(320, 240)
+    assert (camera.fx, camera.fy, camera.cx, camera.cy) == (190.0, 190.5, 165.0, 118.0)
+    assert camera.distortion == ()
+    assert [note.kind for note in notes] == [NoteKind.INTRINSICS_SCALED]
+
+
+def test_rectified_images_without_their_intrinsics_are_told():
+    cameras = PictureCameras(Config(images_rectified=True))
+    cameras.calibrate(CameraModel(460.0, 460.0, 320.0, 240.0, (), "", 640, 480))
+    found = cameras.of(640, 480)
+    assert kinds(found) == [NoteKind.CAMERA_INFO_REFUSED]
+    assert "images_rectified: false" in found.notes[0].text

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tracker.camera import CameraModel, Sensor
+from tracker.camera import CameraModel, Pinhole, Sensor
 from tracker.containers import CameraImage, Scan, Truth
 from tracker.errors import ConfigError, RecordingError, ShapeError
 from tracker.geometry import RigidTransform
@@ -98,14 +98,16 @@ def scan_from_message(message: Any) -> Scan:
 def camera_from_message(message: Any) -> CameraModel:
     """The intrinsics of a sensor_msgs/CameraInfo, for the pictures as they are sent.
 
-    K belongs to a picture of `width` x `height`. A region of interest is cut from that (all of it
-    where the region has no size), then binned.
+    K and P belong to a picture of `width` x `height`. A region of interest is cut from that (all
+    of it where the region has no size), then binned. A camera that fills in P alone sends
+    rectified pictures.
 
     Raises:
         ConfigError: The intrinsics make no sense, or the region does not lie in the picture.
     """
     k = message.K if hasattr(message, "K") else message.k  # ROS 1 writes it large
     d = message.D if hasattr(message, "D") else message.d
+    p = message.P if hasattr(message, "P") else message.p
     width, height, roi = int(message.width), int(message.height), message.roi
     across, down = max(int(message.binning_x), 1), max(int(message.binning_y), 1)
     left, top = int(roi.x_offset), int(roi.y_offset)
@@ -118,18 +120,23 @@ def camera_from_message(message: Any) -> CameraModel:
             "set use_camera_info: false."
         )
     is_cut = is_sized and (wide, high) != (width, height)
+
+    def sent(fx: float, fy: float, cx: float, cy: float) -> Pinhole:
+        return Pinhole(fx / across, fy / down, (cx - left) / across, (cy - top) / down)
+
+    distorted = sent(float(k[0]), float(k[4]), float(k[2]), float(k[5]))
+    rectified = sent(float(p[0]), float(p[5]), float(p[2]), float(p[6])) if p[0] > 0.0 else None
+    is_rectified = rectified is not None and not any(k)
     return CameraModel(
-        fx=float(k[0]) / across,
-        fy=float(k[4]) / down,
-        cx=(float(k[2]) - left) / across,
-        cy=(float(k[5]) - top) / down,
-        distortion=tuple(float(value) for value in d),
-        distortion_model=message.distortion_model,
+        *(rectified if rectified is not None and is_rectified else distorted),
+        distortion=() if is_rectified else tuple(float(value) for value in d),
+        distortion_model="" if is_rectified else message.distortion_model,
         width=max(wide // across, 1) if is_sized else None,
         height=max(high // down, 1) if is_sized else None,
         sensor=Sensor(-left / across, -top / down, width / across, height / down)
         if is_cut
         else None,
+        rectified=rectified,
     )
 
 

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tracker.camera import CameraModel, Sensor
+from tracker.camera import CameraModel, Pinhole, Sensor
 from tracker.containers import CameraImage, Scan, Truth
 from tracker.errors import ClockError, ConfigError, RecordingError, ShapeError, TrackerError
 from tracker.geometry import RigidTransform
@@ -42,6 +42,20 @@ def test_intrinsics_belong_to_the_region_as_it_is_sent():
     assert camera.is_centered
 
 
+def test_p_is_kept_for_rectified_images():
+    p = np.array([420.0, 0, 330, -21, 0, 410, 250, 0, 0, 0, 1, 0])
+    (camera,) = events_from_message(INFO, camera_info(p=p, width=640, height=480, binning_x=2))
+    assert (camera.fx, camera.rectified) == (200.0, Pinhole(210.0, 410.0, 165.0, 250.0))
+
+
+def test_a_camera_with_p_alone_sends_rectified_images():
+    p = np.array([420.0, 0, 330, 0, 0, 410, 250, 0, 0, 0, 1, 0])
+    info = camera_info((0.0,) * 9, p=p, d=np.full(5, 0.1), distortion_model="plumb_bob")
+    (camera,) = events_from_message(INFO, info)
+    assert (camera.fx, camera.fy, camera.cx, camera.cy) == (420.0, 410.0, 330.0, 250.0)
+    assert camera.distortion == ()
+
+
 def test_a_region_without_a_size_is_the_whole_picture():
     (camera,) = events_from_message(INFO, camera_info(width=640, height=480, binning_x=1))
     assert (camera.width, camera.height, camera.sensor) == (640, 480, None)
@@ -69,8 +83,8 @@ def test_a_region_beyond_its_picture_is_refused(roi):
 def test_ros1_names_of_the_matrices_are_understood():
     message = camera_info()
     ros1 = SimpleNamespace(
-        K=message.k, D=[0.0] * 5, width=640, height=480, binning_x=0, binning_y=0, roi=message.roi,
-        distortion_model="plumb_bob",
+        K=message.k, D=[0.0] * 5, P=message.p, width=640, height=480, binning_x=0, binning_y=0,
+        roi=message.roi, distortion_model="plumb_bob",
     )  # fmt: skip
     (camera,) = events_from_message(INFO, ros1)
     assert (camera.fx, camera.fy, camera.cx, camera.cy) == (400.0, 300.0, 320.0, 240.0)
