@@ -34,7 +34,7 @@ def beam_index(scan: LocatedScan, heading_rad: ArrayLike) -> IntArray:
     before, after = ((turn - beams[[0, -1]][:, None]) // scan.spacing_rad).astype(np.int64)
     index = np.searchsorted(beams, turn, side="right") - 1
     index = np.where(before < 0, before, index + np.maximum(after, 0))
-    return index % len(scan) if scan.is_full_turn else index
+    return np.asarray(index % len(scan) if scan.is_full_turn else index, dtype=np.int64)
 
 
 def median_range(scan: LocatedScan, heading_rad: ArrayLike, window_beams: int = 3) -> FloatArray:

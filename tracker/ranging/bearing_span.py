@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from tracker.camera import CameraModel
+from tracker.containers import FloatArray
 from tracker.geometry import RigidTransform, normalize_angle
 
 #: Raised hands are seen between these elevations, from cameras at the height of a table or a head;
@@ -28,9 +31,7 @@ def bearing_span_rad(
         Counter-clockwise from the camera's yaw: to the right, then to the left. A camera that
         sees no such place gives the span of all that it sees.
     """
-    columns, rows = (np.linspace(0.0, length, _GRID) for length in image_size)
-    pixels = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
-    rays = fixed_from_camera.rotate(camera.rays(pixels))
+    rays = fixed_from_camera.rotate(_grid_rays(camera, image_size))
     elevation = np.arctan2(rays[:, 2], np.hypot(rays[:, 0], rays[:, 1]))
     seen = (elevation >= _ELEVATION_RAD[0]) & (elevation <= _ELEVATION_RAD[1])
     if not seen.any():
@@ -38,3 +39,12 @@ def bearing_span_rad(
     bearing = np.arctan2(rays[seen, 1], rays[seen, 0]) - fixed_from_camera.yaw_rad
     bearing = normalize_angle(bearing)
     return float(bearing.min()), float(bearing.max())
+
+
+@lru_cache(maxsize=4)
+def _grid_rays(camera: CameraModel, image_size: tuple[int, int]) -> FloatArray:
+    """Unit vectors all over the picture, shape (G, 3), in the camera's body frame."""
+    columns, rows = (np.linspace(0.0, length, _GRID) for length in image_size)
+    pixels = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
+    rays = camera.rays(pixels)
+    return rays[np.isfinite(rays[:, 0])]
