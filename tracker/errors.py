@@ -8,6 +8,7 @@
         TransformError     no transform between two frames at a stamp (also a LookupError)
         ModelFileError     a model file that is missing, broken or cannot be fetched
         RecordingError     a recording, video or folder that cannot be read or written
+          OutputError      a file that cannot be written
         SceneError         a simulation scene that makes no sense (also a ValueError)
         WorkerError        processes or a cluster that die or cannot be reached
         CalibrationError   data that do not determine what was asked for (also a ValueError)
@@ -47,6 +48,10 @@ class ModelFileError(TrackerError):
 
 class RecordingError(TrackerError):
     """A recording cannot be read, or an output cannot be written."""
+
+
+class OutputError(RecordingError):
+    """An output cannot be written."""
 
 
 class SceneError(TrackerError, ValueError):

@@ -8,20 +8,22 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Scan, Truth
-from tracker.errors import ClockError, RecordingError, TransformError
+from tracker.errors import ClockError, OutputError, RecordingError, TransformError
 from tracker.evaluation.episode_report import EpisodeReport
 from tracker.evaluation.episodes import EpisodeEvaluation
 from tracker.messages import Event
+from tracker.outputs import FolderLock, check_inputs_stay
 from tracker.perception.detector import HandDetector
 from tracker.pipeline import Pipeline
 from tracker.problems import Problems
 from tracker.recording import Recording, Topics, open_recording
-from tracker.replay_outputs import ReplayOutputs
+from tracker.replay_outputs import ReplayOutputs, replay_files
 from tracker.report.history import History
 from tracker.report.overview import draw_overview
 from tracker.report.summary import summarize, write_summary
@@ -88,24 +90,30 @@ def replay(
         RecordingError: The source cannot be opened or holds neither images nor scans, or the
             outputs cannot be written.
         ModelFileError: The hand models are not there.
+        ConfigError: An output would replace the source, or another replay writes into `out`.
     """
     config, out = config or Config(), Path(out)
     problems = Problems()
     history = History()
     evaluation = EpisodeEvaluation()
     has_truth, frames_seen = False, 0
-    with open_recording(
-        source,
-        topics or Topics(),
-        with_truth=True,
-        stamps=stamps,
-        max_pixels=config.picture_max_pixels,
-    ) as recording:
+    check_inputs_stay([Path(source)], replay_files(out))
+    with (
+        open_recording(
+            source,
+            topics or Topics(),
+            with_truth=True,
+            stamps=stamps,
+            max_pixels=config.picture_max_pixels,
+        ) as recording,
+        ExitStack() as held,
+    ):
         if not recording.has_images:
             if not recording.has_scans or recording.image_topics:
                 recording.require_images()
             problems.remark("no images in the recording: nobody can be seen raising a hand")
         pipeline = Pipeline(config, detector, watch=watch)
+        held.enter_context(FolderLock(out))
         with ReplayOutputs(out, config) as outputs:
 
             def advance(now_ns: int | None = None) -> None:
@@ -132,6 +140,8 @@ def replay(
                     advance(log_ns)
                     if progress is not None and isinstance(event, (CameraImage, Scan)):
                         progress(recording.share(log_ns), history.frames_processed)
+            except OutputError:
+                raise
             except RecordingError as error:  # breaks off: what came before it counts
                 problems.add("broken recording", str(error))
             advance()
@@ -141,18 +151,18 @@ def replay(
         for reason in recording.skipped_lines():
             problems.add("skipped", reason)
         remarks = (*recording.notes, *problems.remarks())
-    episodes = evaluation.report() if has_truth else None
-    summary = summarize(history, frames_seen=frames_seen, evaluation=episodes) | {
-        "source": str(source),
-        "problems": list(problems.lines()),
-        "remarks": list(remarks),
-    }
-    write_summary(summary, out / "summary.json")
-    draw_overview(history, out / "overview.png", episodes)
-    if progress is not None:
-        progress(1.0, history.frames_processed)
-    files = (*outputs.files, out / "summary.json", out / "overview.png")
-    return Replay(history, summary, episodes, problems.lines(), remarks, files)
+        episodes = evaluation.report() if has_truth else None
+        summary = summarize(history, frames_seen=frames_seen, evaluation=episodes) | {
+            "source": str(source),
+            "problems": list(problems.lines()),
+            "remarks": list(remarks),
+        }
+        write_summary(summary, out / "summary.json")
+        draw_overview(history, out / "overview.png", episodes)
+        if progress is not None:
+            progress(1.0, history.frames_processed)
+        files = tuple(path for path in replay_files(out) if path.exists())
+        return Replay(history, summary, episodes, problems.lines(), remarks, files)
 
 
 def _feed(pipeline: Pipeline, event: Event, log_ns: int, problems: Problems) -> None:

@@ -8,7 +8,6 @@ from types import TracebackType
 
 from tracker.config import NODE_NAME, Config
 from tracker.containers import CameraImage, FrameResult, ImageArray, Scan
-from tracker.errors import RecordingError
 from tracker.messages import encode, encode_markers
 from tracker.perception.drawing import draw_debug_image
 from tracker.recording import RecordingWriter
@@ -18,31 +17,35 @@ from tracker.report.tracks_csv import TracksCsv
 from tracker.transforms import StampedTransform
 
 
+def replay_files(out: Path) -> tuple[Path, ...]:
+    """Every file of a replay: recording, table and video, then summary and picture."""
+    names = ("output.mcap", "tracks.csv", "debug.mp4", "summary.json", "overview.png")
+    return tuple(out / name for name in names)
+
+
 class ReplayOutputs:
     """The files that grow with a recording; a context manager.
 
+    They replace those of an earlier replay when the recording is over; after an error, that the
+    recording itself is broken apart, those stay.
+
     Args:
-        out: Folder; made where it is not there.
+        out: An existing folder.
         config: The parameters in force.
 
     Raises:
-        RecordingError: The folder or a file cannot be written.
+        OutputError: A file cannot be written.
     """
 
     def __init__(self, out: Path, config: Config) -> None:
-        try:
-            out.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise RecordingError(f"{out}: cannot be made ({error.strerror}).") from error
-        self.files = (out / "output.mcap", out / "tracks.csv", out / "debug.mp4")
+        recording, table, video, *_ = replay_files(out)
         self._config = config
-        self._stack = ExitStack()
-        enter = self._stack.enter_context
-        self._recording = enter(
-            RecordingWriter(self.files[0], fixed_frame=config.fixed_frame, overwrite=True)
-        )
-        self._table = enter(TracksCsv(self.files[1]))
-        self._video = enter(DebugVideo(self.files[2], config.processing_rate))
+        with ExitStack() as opened:
+            enter, frame = opened.enter_context, config.fixed_frame
+            self._recording = enter(RecordingWriter(recording, fixed_frame=frame, overwrite=True))
+            self._table = enter(TracksCsv(table))
+            self._video = enter(DebugVideo(video, config.processing_rate))
+            self._stack = opened.pop_all()
 
     def __enter__(self) -> ReplayOutputs:
         return self

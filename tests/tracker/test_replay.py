@@ -9,8 +9,9 @@ import pytest
 
 from tracker import CameraImage, Config, Scan
 from tracker.camera import CameraModel
-from tracker.errors import RecordingError
+from tracker.errors import ConfigError, RecordingError
 from tracker.messages import CameraInfo
+from tracker.outputs import FolderLock
 from tracker.recording import RecordingWriter, open_recording
 from tracker.replay import replay
 from tracker.transforms import StampedTransform
@@ -263,3 +264,40 @@ def test_real_photos_replay_without_error(tmp_path, model_store):
     result = replay(photos, tmp_path, Config(model_complexity=1))
     assert result.problems == ()
     assert result.history.frames_processed == len(list(photos.iterdir()))
+
+
+def test_a_source_is_never_written_over(tmp_path, write_bag, hand_ahead):
+    bag = write_bag(tmp_path / "out.mcap")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/output.mcap").hardlink_to(bag)
+    before = bag.read_bytes()
+    for source in (bag, tmp_path / "out/output.mcap", tmp_path / "out"):
+        with pytest.raises(ConfigError, match="name another place"):
+            replay(source, tmp_path / "out", detector=hand_ahead)
+    assert bag.read_bytes() == before
+
+
+def test_two_replays_never_write_into_one_folder(tmp_path, write_bag, hand_ahead):
+    bag = write_bag(tmp_path / "in.mcap")
+    with (
+        FolderLock(tmp_path / "out"),
+        pytest.raises(ConfigError, match="another command writes there"),
+    ):
+        replay(bag, tmp_path / "out", detector=hand_ahead)
+
+
+def test_a_replay_that_is_stopped_leaves_the_earlier_one_s_files(tmp_path, write_bag, hand_ahead):
+    bag, out = write_bag(tmp_path / "in.mcap"), tmp_path / "out"
+    names = {path.name for path in replay(bag, out, detector=hand_ahead).files}
+    before = {name: (out / name).read_bytes() for name in names}
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        replay(bag, out, detector=hand_ahead, watchers=[stop])
+    assert {name: (out / name).read_bytes() for name in names} == before
+    with open_recording(out / "output.part.mcap") as recording:
+        assert list(recording.topics)
+    replay(bag, out, detector=hand_ahead)
+    assert {path.name for path in out.iterdir()} == {*names, ".lock"}

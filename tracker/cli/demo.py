@@ -14,6 +14,7 @@ from tracker.cli.options import (
     ParameterOption,
     console,
     errors,
+    parameter_files,
     parameters_from,
     print_files,
     print_json,
@@ -21,6 +22,7 @@ from tracker.cli.options import (
 from tracker.cli.progress import bar, fetch_models_if_needed
 from tracker.cli.simulate import simulate
 from tracker.errors import RecordingError
+from tracker.outputs import check_inputs_stay
 
 #: The demo's pictures go as JPEG: raw they would fill a gigabyte of the reader's disk.
 _DEMO_JPEG_QUALITY = 92
@@ -42,11 +44,16 @@ def demo_command(
     nothing else. Ends with status 1 if a raised hand was missed or invented.
     """
     from tracker.replay import replay
+    from tracker.replay_outputs import replay_files
     from tracker.report.episode_table import episode_table
 
     parameters = parameters_from(config, param)
-    fetch_models_if_needed(errors)
     recording = out / "recording.mcap"
+    given = Path(scene) if Path(scene).is_file() else None
+    check_inputs_stay(
+        [given, *parameter_files(config, parameters)], [recording, *replay_files(out)]
+    )
+    fetch_models_if_needed(errors)
     simulate(scene, recording, seed, _DEMO_JPEG_QUALITY, force=True)
     with bar(errors, "Replaying") as progress:
         result = replay(recording, out, parameters, progress=progress)

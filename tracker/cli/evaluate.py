@@ -14,6 +14,7 @@ from tracker.cli.options import (
     ParameterOption,
     console,
     errors,
+    parameter_files,
     parameters_from,
     print_files,
     print_json,
@@ -21,6 +22,7 @@ from tracker.cli.options import (
 from tracker.cli.progress import bar, fetch_models_if_needed
 from tracker.config import Config
 from tracker.errors import ConfigError
+from tracker.outputs import check_inputs_stay
 
 _SCENES, _PHOTOS = "Drawn scenes", "Your own photos"
 
@@ -100,8 +102,16 @@ def evaluate_command(
 
         raised-hand evaluate my_photos --out evaluation -p model_complexity:=1
     """
+    from tracker.report.detection_table import SCENE_FILES
+    from tracker.report.photo_table import PHOTO_FILES
+
     # One thread for each of the processes; more would only get into each other's way.
     settings = parameters_from(config, param, Config(inference_threads=1))
+    if out is not None:
+        names = SCENE_FILES if folder is None else PHOTO_FILES
+        check_inputs_stay(
+            [folder, *parameter_files(config, settings)], [out / name for name in names]
+        )
     if folder is not None:
         _evaluate_photos(folder, settings, looks, out, as_json)
         return

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from tracker.cli.options import JsonOption, console, errors, print_json
+from tracker.outputs import check_inputs_stay
 
 models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
 
@@ -34,6 +35,7 @@ def models_fetch(
     from tracker.perception.models import ModelStore, fetch_models
 
     store = ModelStore(to)
+    check_inputs_stay([source], [row.path for row in store.status()])
     with fetch_progress(errors) as progress:
         fetch_models(store, source, progress)
     console.print(f"models are in {store.directory}", highlight=False, soft_wrap=True)

@@ -26,6 +26,7 @@ from tracker.cli.options import (
 )
 from tracker.cli.progress import counting_bar
 from tracker.errors import ConfigError
+from tracker.outputs import check_inputs_stay
 
 
 class TableFormat(str, Enum):
@@ -76,14 +77,17 @@ def monte_carlo_command(
     from tracker.evaluation.monte_carlo import find_scenario, monte_carlo, worthwhile_workers
     from tracker.evaluation.scenario import SCENARIOS, PeopleScenario, default_config
     from tracker.evaluation.study import study_as_dict
+    from tracker.evaluation.study_log import LOG_FILES
     from tracker.report.study_page import study_page
-    from tracker.report.study_table import study_table, write_parquet, write_study
+    from tracker.report.study_table import STUDY_FILES, study_table, write_parquet, write_study
 
     if scenario is None:
         for name, item in SCENARIOS.items():
             console.print(f"{name:<22}{item.title}", highlight=False, soft_wrap=True)
         return
     check_is_no_folder("--report", report)
+    names = (*LOG_FILES, *STUDY_FILES) if out is not None else ()
+    check_inputs_stay([config, paths], [*((out or Path()) / name for name in names), report])
     _, chosen = find_scenario(scenario)
     if paths is not None:
         if not isinstance(chosen, PeopleScenario):

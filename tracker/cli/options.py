@@ -57,6 +57,11 @@ def parameters_from(
     return chosen.replace(**changes) if changes else chosen
 
 
+def parameter_files(config: Path | None, parameters: Config) -> list[Path | None]:
+    """The files that parameters come from: their own, and a pose model that they name."""
+    return [config, Path(parameters.pose_model) if parameters.pose_model else None]
+
+
 def command_line() -> str:
     """What the user typed, fit to be typed again."""
     return shlex.join(["raised-hand", *sys.argv[1:]])

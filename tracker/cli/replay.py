@@ -19,12 +19,14 @@ from tracker.cli.options import (
     complain,
     console,
     errors,
+    parameter_files,
     parameters_from,
     print_files,
     print_json,
 )
 from tracker.cli.progress import bar, fetch_models_if_needed
 from tracker.errors import ConfigError
+from tracker.outputs import check_inputs_stay
 
 
 def replay_command(
@@ -61,6 +63,7 @@ def replay_command(
     """
     from tracker.recording import Topics
     from tracker.replay import Watcher, replay
+    from tracker.replay_outputs import replay_files
     from tracker.report.replay_page import ReplayReport
     from tracker.report.rerun_view import RerunView
     from tracker.report.summary import summary_table
@@ -72,6 +75,9 @@ def replay_command(
         raise ConfigError(f"{source}: there is no such file or folder.")
     check_is_no_folder("--report", report)
     check_is_no_folder("--save-view", save_view)
+    check_inputs_stay(
+        [source, *parameter_files(config, parameters)], [*replay_files(out), report, save_view]
+    )
     fetch_models_if_needed(errors)
     watched = ReplayReport(parameters) if report is not None else None
     watchers: list[Watcher] = [watched.watch] if watched is not None else []

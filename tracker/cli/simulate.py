@@ -9,6 +9,7 @@ import typer
 
 from tracker.cli.options import errors, print_files
 from tracker.cli.progress import bar
+from tracker.outputs import check_inputs_stay
 
 
 def simulate_command(
@@ -32,8 +33,11 @@ def simulate_command(
 
 def simulate(scene: str, out: Path, seed: int, jpeg: int | None, *, force: bool) -> None:
     """Play a scene into a recording, with a bar that tells how far it is."""
+    from tracker.recording import recording_files
     from tracker.simulation import load_scene, write_simulation
 
+    if Path(scene).is_file():
+        check_inputs_stay([Path(scene)], {out, *recording_files(out)})
     loaded = load_scene(scene)
     with bar(errors, f"Simulating {Path(scene).stem}") as progress:
         write_simulation(

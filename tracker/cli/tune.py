@@ -17,6 +17,7 @@ from tracker.cli.options import (
     command_line,
     console,
     errors,
+    parameter_files,
     parameters_from,
     print_files,
     print_json,
@@ -24,6 +25,7 @@ from tracker.cli.options import (
 from tracker.cli.progress import bar, fetch_models_if_needed, trials_bar
 from tracker.config import Config
 from tracker.errors import ConfigError, RecordingError
+from tracker.outputs import check_inputs_stay
 
 if TYPE_CHECKING:
     from tracker.evaluation.tuning_objective import Objective
@@ -112,7 +114,12 @@ def tune_command(
     from tracker.evaluation.tuning_space import DEFAULT_KINDS, choose_parameters
     from tracker.recording import Topics
     from tracker.report.tuning_page import tuning_page
-    from tracker.report.tuning_table import parameters_table, verdict_table, write_tuning
+    from tracker.report.tuning_table import (
+        TUNING_FILES,
+        parameters_table,
+        verdict_table,
+        write_tuning,
+    )
 
     if source is None:
         _list()
@@ -129,6 +136,9 @@ def tune_command(
     default = default_config(SCENARIOS[source]) if is_scenario else None
     base = parameters_from(config, param, default)
     check_is_no_folder("--report", report)
+    files = [out / name for name in (*TUNING_FILES, "tuning.db")]
+    read = [None if is_scenario else Path(source), *parameter_files(config, base)]
+    check_inputs_stay(read, [*files, report])
     _make_room(out)
     if is_scenario:
         objective = scenario_objective(
@@ -156,9 +166,9 @@ def tune_command(
     except KeyboardInterrupt:
         errors.print(f"\nThe trials are in {address}; the same command goes on.", soft_wrap=True)
         raise
-    files: tuple[Path, ...] = write_tuning(tuning, out)
+    written: tuple[Path, ...] = write_tuning(tuning, out)
     if report is not None:
-        files = (*files, tuning_page(tuning, command=command_line()).write(report))
+        written = (*written, tuning_page(tuning, command=command_line()).write(report))
     if as_json:
         from tracker.evaluation.tuning_result import tuning_as_dict
 
@@ -166,7 +176,7 @@ def tune_command(
         return
     console.print(parameters_table(tuning))
     console.print(verdict_table(tuning))
-    print_files(files)
+    print_files(written)
 
 
 def _recording(source: Path, base: Config, topics: Topics) -> Objective:

@@ -19,8 +19,11 @@ import yaml
 from tracker.closing import Closing
 from tracker.containers import FloatArray
 from tracker.errors import ConfigError, RecordingError
-from tracker.evaluation.folder_lock import FolderLock
 from tracker.evaluation.unit import Unit
+from tracker.outputs.folder_lock import FolderLock
+
+#: What a study keeps in its folder.
+LOG_FILES = ("settings.yaml", "trials.csv", "sums.f64")
 
 #: Longer than any line of trials.csv.
 _BLOCK = 1 << 16
@@ -53,10 +56,11 @@ class StudyLog(Closing):
         self._record = np.dtype(
             [("trials", "<i8"), *((name, "<f8", shape) for name, shape in sums.items())]
         )
-        self._rows_path, self._sums_path = self._folder / "trials.csv", self._folder / "sums.f64"
+        self._settings_path, self._rows_path, self._sums_path = (
+            self._folder / name for name in LOG_FILES
+        )
         with ExitStack() as opened:
             try:
-                self._folder.mkdir(parents=True, exist_ok=True)
                 opened.enter_context(FolderLock(self._folder))
                 self._agree(dict(settings))
                 self._rows = self._read_rows()
@@ -126,7 +130,7 @@ class StudyLog(Closing):
         self._opened.close()
 
     def _agree(self, settings: dict[str, Any]) -> None:
-        path = self._folder / "settings.yaml"
+        path = self._settings_path
         if not path.exists():
             if self._rows_path.exists():
                 raise ConfigError(

@@ -2,6 +2,14 @@
 
 from tracker.recording.opening import open_recording
 from tracker.recording.recording import Recording, Skipped, Summary, Topics
-from tracker.recording.writer import RecordingWriter
+from tracker.recording.writer import RecordingWriter, recording_files
 
-__all__ = ["Recording", "RecordingWriter", "Skipped", "Summary", "Topics", "open_recording"]
+__all__ = [
+    "Recording",
+    "RecordingWriter",
+    "Skipped",
+    "Summary",
+    "Topics",
+    "open_recording",
+    "recording_files",
+]

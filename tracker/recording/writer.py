@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 from copy import deepcopy
+from glob import escape
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import yaml
 from mcap.writer import CompressionType, Writer
 
-from tracker.closing import Closing
 from tracker.containers import CameraImage
 from tracker.errors import RecordingError
 from tracker.messages import Encodable, Encoded, definition, encode, type_hash
+from tracker.outputs import GrowingFile, GrowingOutput, unwritable, writing_into
 from tracker.recording.qos import offered_qos
 
 #: The version of rosbag2's metadata whose QoS profiles Humble and Jazzy both read.
 _METADATA_VERSION = 8
 
 
-class RecordingWriter(Closing):
+class RecordingWriter(GrowingOutput):
     """Writes containers as ROS 2 messages, streaming; a context manager.
 
-    Whatever ends the `with` block, what was written until then can be read.
+    Whatever ends the `with` block, what was written until then can be read. An earlier recording
+    is replaced when the new one is whole; until then the new one is `name.part.mcap` beside it.
 
     Args:
         path: A file that ends in `.mcap`, or else the folder of a rosbag2 recording.
@@ -46,9 +48,9 @@ class RecordingWriter(Closing):
         self.path = Path(path)
         self._fixed_frame = fixed_frame
         self._jpeg_quality = jpeg_quality
-        self._is_folder = self.path.suffix != ".mcap"
-        name = f"{self.path.name}_0.mcap" if self._is_folder else self.path.name
-        self._file = (self.path if self._is_folder else self.path.parent) / name
+        self._file, *metadata = recording_files(self.path)
+        self._is_folder = bool(metadata)
+        self._place = GrowingFile(self._file)
         self._stream = self._create(overwrite)
         self._mcap = Writer(self._stream, compression=CompressionType.LZ4)
         self._mcap.start(profile="ros2", library="raised-hand-tracker")
@@ -86,7 +88,7 @@ class RecordingWriter(Closing):
             count = self._counts[topic]
             self._mcap.add_message(channel, log_ns, message.cdr, log_ns, sequence=count)
         except OSError as error:
-            raise self._unwritable(error) from error
+            raise unwritable(self.path, error) from error
         self._counts[topic] = count + 1
         self._first_ns = log_ns if self._first_ns is None else min(self._first_ns, log_ns)
         self._last_ns = max(self._last_ns, log_ns)
@@ -99,6 +101,17 @@ class RecordingWriter(Closing):
         """
         if not self._is_open:
             return
+        self._write_index()
+        self._place.finish()
+        if self._is_folder:
+            self._write_metadata()
+
+    def break_off(self) -> None:
+        """As `GrowingOutput.break_off`."""
+        if self._is_open:
+            self._write_index()
+
+    def _write_index(self) -> None:
         self._is_open = False
         text = yaml.safe_dump(self._metadata(), sort_keys=False)
         try:
@@ -106,12 +119,17 @@ class RecordingWriter(Closing):
                 # rosbag2 reads its QoS profiles by the version in here.
                 self._mcap.add_metadata("rosbag2", {"serialized_metadata": text})
                 self._mcap.finish()  # type: ignore[no-untyped-call]  # mcap leaves it untyped
-            if self._is_folder:
-                whole = {"rosbag2_bagfile_information": self._metadata()}
-                target = self.path / "metadata.yaml"
-                target.write_text(yaml.safe_dump(whole, sort_keys=False), encoding="utf-8")
         except OSError as error:
-            raise self._unwritable(error) from error
+            raise unwritable(self.path, error) from error
+
+    def _write_metadata(self) -> None:
+        whole = {"rosbag2_bagfile_information": self._metadata()}
+        with writing_into(self.path) as new:
+            text = yaml.safe_dump(whole, sort_keys=False)
+            new("metadata.yaml").write_text(text, encoding="utf-8")
+            for file in self.path.glob(f"{escape(self.path.name)}_*.mcap"):
+                if file != self._file:  # a part of the recording that was replaced
+                    file.unlink()
 
     def _create(self, overwrite: bool) -> BinaryIO:
         if self.path.exists() and not overwrite:
@@ -123,12 +141,9 @@ class RecordingWriter(Closing):
             raise RecordingError(f"{self.path}: is in the way; {kind} is to be written there.")
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
-            if self._is_folder:  # nothing of an older recording may stay beside the new one
-                for stale in (*self.path.glob("*.mcap"), *self.path.glob("metadata.yaml")):
-                    stale.unlink()
-            return self._file.open("wb")
+            return self._place.path.open("wb")
         except OSError as error:
-            raise self._unwritable(error) from error
+            raise unwritable(self.path, error) from error
 
     def _channel(self, topic: str, message: Encoded) -> int:
         if topic in self._channels:
@@ -189,8 +204,9 @@ class RecordingWriter(Closing):
             "ros_distro": "",
         }
 
-    def _unwritable(self, error: OSError) -> RecordingError:
-        return RecordingError(
-            f"{self.path}: cannot be written ({error.strerror}); check the place, the rights and "
-            "the room on the disk."
-        )
+
+def recording_files(path: Path) -> list[Path]:
+    """The files of a new recording: a .mcap file, or those of a rosbag2 folder, data first."""
+    if path.suffix.lower() == ".mcap":
+        return [path]
+    return [path / f"{path.name}_0.mcap", path / "metadata.yaml"]

@@ -1,55 +1,50 @@
-"""How does debug.mp4 come to be? Frame by frame, in the best encoding that OpenCV has here."""
+"""How does debug.mp4 come to be? Picture by picture, as H.264, which every browser plays.
+
+The file grows in fragments of about a second: a kill costs the last of them. When it is whole it
+gets the index of an ordinary .mp4.
+"""
 
 from __future__ import annotations
 
-import os
-import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import suppress
+from fractions import Fraction
 from pathlib import Path
-from types import TracebackType
 
+import av
 import cv2
 import numpy as np
 
 from tracker.containers import ImageArray
-from tracker.errors import RecordingError
+from tracker.errors import OutputError
+from tracker.outputs import GrowingFile, GrowingOutput, unwritable
 
-#: H.264 plays in browsers, but PyPI's OpenCV comes without an encoder for it (4.11 to 5.0); a
-#: distribution's OpenCV mostly has one. VP9 would play too, at 0.1 to 1 s per frame of 640x480
-#: (measured); MPEG-4 Part 2 takes 3 to 6 ms and plays in desktop players.
-_ENCODINGS = ("avc1", "mp4v")
+_CONTAINER = {
+    "movflags": "hybrid_fragmented+frag_keyframe+default_base_moof",
+    "flush_packets": "1",
+}
+#: Without looking ahead, so that a picture that was written is in the file.
+_ENCODER = {"preset": "veryfast", "tune": "zerolatency", "crf": "25"}
 
-#: An mp4 is lost without its index, which is written last: stop while there is room for it.
-_ROOM_BYTES = 16_000_000
 
-
-class DebugVideo:
+class DebugVideo(GrowingOutput):
     """Writes pictures into an .mp4 file; a picture of another size is fitted into the first one's.
 
     Leaving the context, also by an exception, leaves a file that plays.
 
     Args:
-        path: The file, replaced if it exists; it does not stay when no picture comes.
+        path: The file; an earlier one is replaced at the end, and goes when no picture came.
         rate_hz: Pictures per second at which it plays.
 
     Raises:
-        RecordingError: The file cannot be created; later, that it cannot be written.
+        OutputError: What a kill left there cannot be removed.
     """
 
     def __init__(self, path: str | Path, rate_hz: float) -> None:
         self._path = Path(path)
-        self._rate_hz = rate_hz
-        self._writer: cv2.VideoWriter | None = None
+        self._place = GrowingFile(self._path)
+        self._rate_hz = Fraction(rate_hz).limit_denominator(1000)
         self._size = (0, 0)
-        self._frames = 0
-        try:
-            self._path.open("wb").close()
-        except OSError as error:
-            raise RecordingError(
-                f"{self._path}: cannot be created ({error.strerror}); "
-                "a folder that exists and may be written is needed."
-            ) from error
+        self._container: av.container.OutputContainer | None = None
 
     def write(self, bgr: ImageArray) -> None:
         """Append one picture.
@@ -58,72 +53,52 @@ class DebugVideo:
             bgr: Shape (height, width, 3), uint8, blue-green-red.
 
         Raises:
-            RecordingError: No encoder takes it, or the disk is almost full.
+            OutputError: The file cannot be written, or no encoder takes the picture.
         """
-        if shutil.disk_usage(self._path.parent).free < _ROOM_BYTES:
-            raise RecordingError(
-                f"{self._path}: less than {_ROOM_BYTES / 1e6:.0f} MB are free after "
-                f"{self._frames} pictures; make room on the disk, or write no video."
-            )
-        if self._writer is None:
-            height, width = bgr.shape[:2]
-            self._size = (width + width % 2, height + height % 2)  # encoders want even sides
-            self._writer = self._open()
-        self._writer.write(_fit(bgr, self._size))
-        self._frames += 1
+        try:
+            if self._container is None:
+                height, width = bgr.shape[:2]
+                self._size = (width + width % 2, height + height % 2)  # encoders want even sides
+                self._open()
+            picture = av.VideoFrame.from_ndarray(_fit(bgr, self._size), format="bgr24")
+            self._encode(picture)
+        except OSError as error:
+            raise unwritable(self._path, error) from error
+        except av.FFmpegError as error:
+            raise OutputError(f"{self._path}: cannot be encoded ({error}).") from error
 
     def close(self) -> None:
-        """Nothing more comes; write the index.
+        """The video is whole: write its index; it replaces an earlier one.
 
         Raises:
-            RecordingError: The finished file does not hold every picture.
+            OutputError: The disk is full.
         """
-        self._release()
-        if self._frames == 0:
-            return
-        reader = cv2.VideoCapture(str(self._path), cv2.CAP_FFMPEG)
-        held = int(reader.get(cv2.CAP_PROP_FRAME_COUNT)) if reader.isOpened() else 0
-        reader.release()
-        if held < self._frames:
-            raise RecordingError(
-                f"{self._path}: holds {held} of {self._frames} pictures; is the disk full?"
-            )
+        try:
+            if self._container is not None:
+                self._encode(None)
+                container, self._container = self._container, None
+                container.close()
+        except OSError as error:
+            raise unwritable(self._path, error) from error
+        self._place.finish()
 
-    def __enter__(self) -> DebugVideo:
-        return self
+    def break_off(self) -> None:
+        """As `GrowingOutput.break_off`."""
+        if self._container is not None:
+            with suppress(OSError):  # the first error is the one to tell
+                self._container.close()
+            self._container = None
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        if kind is None:
-            self.close()
-        else:
-            self._release()  # the first error is the one to tell
+    def _open(self) -> None:
+        self._container = av.open(str(self._place.path), "w", format="mp4", options=_CONTAINER)
+        self._stream = self._container.add_stream("libx264", self._rate_hz, options=_ENCODER)
+        self._stream.width, self._stream.height = self._size
+        self._stream.pix_fmt = "yuv420p"
+        self._stream.codec_context.gop_size = max(1, round(self._rate_hz))
 
-    def _open(self) -> cv2.VideoWriter:
-        with _quiet_opencv():
-            for name in _ENCODINGS:
-                code = cv2.VideoWriter.fourcc(*name)
-                writer = cv2.VideoWriter(
-                    str(self._path), cv2.CAP_FFMPEG, code, self._rate_hz, self._size
-                )
-                if writer.isOpened():
-                    return writer
-        raise RecordingError(
-            f"{self._path}: this OpenCV ({cv2.__version__}) encodes none of "
-            f"{', '.join(_ENCODINGS)} at {self._size[0]}x{self._size[1]}; "
-            "install opencv-python-headless, or write no video."
-        )
-
-    def _release(self) -> None:
-        if self._writer is not None:
-            self._writer.release()
-            self._writer = None
-        if self._frames == 0:
-            self._path.unlink(missing_ok=True)
+    def _encode(self, picture: av.VideoFrame | None) -> None:
+        assert self._container is not None
+        self._container.mux(self._stream.encode(picture))
 
 
 def side_by_side(left: ImageArray, right: ImageArray) -> ImageArray:
@@ -162,21 +137,3 @@ def _fit(bgr: ImageArray, size: tuple[int, int]) -> ImageArray:
 
 def _resize(bgr: ImageArray, width: int, height: int) -> ImageArray:
     return np.asarray(cv2.resize(bgr, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
-
-
-@contextmanager
-def _quiet_opencv() -> Iterator[None]:
-    """OpenCV complains on stderr about each encoder that it lacks; we only ask."""
-    logging = getattr(cv2.utils, "logging", cv2)  # OpenCV 5 moved it
-    level = logging.getLogLevel()
-    logging.setLogLevel(0)
-    name = "OPENCV_FFMPEG_LOGLEVEL"
-    is_ours = name not in os.environ
-    if is_ours:
-        os.environ[name] = "-8"
-    try:
-        yield
-    finally:
-        logging.setLogLevel(level)
-        if is_ours:
-            del os.environ[name]

@@ -22,8 +22,10 @@ from tracker.evaluation.detection_figures import (
     recall_of,
 )
 from tracker.evaluation.detection_study import DetectionStudy
+from tracker.outputs import writing_into
 from tracker.report.detection_plot import draw_detection
-from tracker.report.folder import writing_into
+
+SCENE_FILES = ("evaluation.json", "episodes.csv", "minutes.csv", "evaluation.png")
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -92,14 +94,13 @@ def write_detection(study: DetectionStudy, folder: str | Path) -> tuple[Path, ..
         RecordingError: A file cannot be written.
     """
     folder = Path(folder)
-    names = ("evaluation.json", "episodes.csv", "minutes.csv", "evaluation.png")
-    document, episodes, minutes, picture = files = tuple(folder / name for name in names)
-    with writing_into(folder):
+    document, episodes, minutes, picture = files = tuple(folder / name for name in SCENE_FILES)
+    with writing_into(folder) as new:
         text = json.dumps(detection_as_dict(study), indent=1) + "\n"
-        document.write_text(text, encoding="utf-8")
-        _write_episodes(study, episodes)
-        _write_minutes(study, minutes)
-        draw_detection(study, picture)
+        new(document.name).write_text(text, encoding="utf-8")
+        _write_episodes(study, new(episodes.name))
+        _write_minutes(study, new(minutes.name))
+        draw_detection(study, new(picture.name))
     return files
 
 

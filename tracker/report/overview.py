@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tracker.containers import FloatArray
-from tracker.errors import RecordingError
 from tracker.evaluation.episode_report import EpisodeReport
+from tracker.outputs import writing_into
 from tracker.report.birdseye import FIELD_OF_VIEW_RAD
 from tracker.report.floor_plan import draw_floor_plan
 from tracker.report.history import History
@@ -55,13 +55,9 @@ def draw_overview(
     shown = {lane.person.id for lane in lanes if lane.person}
     draw_floor_plan(room, history, shown, truth, (low, high), field_of_view_rad)
     draw_timeline(time, history, lanes)
-    try:
-        figure.savefig(path, format="png")
-    except OSError as error:
-        raise RecordingError(
-            f"{path}: cannot be written ({error.strerror}); "
-            "a folder that exists, may be written and has room is needed."
-        ) from error
+    path = Path(path)
+    with writing_into(path.parent) as new:
+        figure.savefig(new(path.name), format="png")
 
 
 def _extent(history: History, truth: EpisodeReport | None) -> tuple[FloatArray, FloatArray]:

@@ -7,7 +7,6 @@ inside, folded sections are the browser's own. Whatever a recording brings is es
 from __future__ import annotations
 
 import io
-import os
 from base64 import b64encode
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +18,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure
 
 from tracker.containers import ImageArray
-from tracker.errors import RecordingError
+from tracker.outputs import writing_into
 
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
@@ -213,14 +212,6 @@ class Page:
             RecordingError: It cannot be written.
         """
         path = Path(path)
-        half = path.with_name(path.name + ".part")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            half.write_text(self.html(), encoding="utf-8")
-            os.replace(half, path)
-        except OSError as error:
-            raise RecordingError(
-                f"{path}: cannot be written ({error.strerror}); "
-                "a file in a folder that may be written and has room is needed."
-            ) from error
+        with writing_into(path.parent) as new:
+            new(path.name).write_text(self.html(), encoding="utf-8")
         return path

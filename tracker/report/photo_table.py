@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tracker.evaluation.photo_study import PhotoStudy, Share, photos_as_dict
+from tracker.outputs import writing_into
 from tracker.report.contact_sheet import draw_contact_sheet
-from tracker.report.folder import writing_into
+
+PHOTO_FILES = ("evaluation.json", "photos.csv", "contact_sheet.png")
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -50,16 +52,15 @@ def write_photos(study: PhotoStudy, folder: str | Path) -> tuple[Path, ...]:
         RecordingError: A file cannot be written, or a photo no longer read.
     """
     folder = Path(folder)
-    names = ("evaluation.json", "photos.csv", "contact_sheet.png")
-    document, table, picture = (folder / name for name in names)
+    document, table, picture = (folder / name for name in PHOTO_FILES)
     told = photos_as_dict(study)
-    with writing_into(folder):
-        document.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
-        with table.open("w", newline="", encoding="utf-8") as file:
+    with writing_into(folder) as new:
+        new(document.name).write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+        with new(table.name).open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, list(told["photos"][0]), lineterminator="\n")
             writer.writeheader()
             writer.writerows(told["photos"])
-        is_drawn = draw_contact_sheet(study, picture)
+        is_drawn = draw_contact_sheet(study, new(picture.name))
     return (document, table, picture) if is_drawn else (document, table)
 
 

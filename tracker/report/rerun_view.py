@@ -17,9 +17,9 @@ from typing import Any
 import cv2
 import numpy as np
 
-from tracker.closing import Closing
 from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Tracks
-from tracker.errors import ConfigError, RecordingError
+from tracker.errors import ConfigError
+from tracker.outputs import GrowingFile, GrowingOutput, unwritable
 from tracker.perception.drawing import FINGER_ROOTS, FINGERS, LOWERED_COLOR, RAISED_COLOR
 from tracker.report.palette import FADED, LIT, ROBOT, WALL, person_color
 
@@ -33,7 +33,7 @@ _EYE_M, _LOOKED_AT_M = (1.5, 0.0, 9.0), (1.5, 0.0, 0.0)  # from above, at what i
 _NOBODY = "nobody"
 
 
-class RerunView(Closing):
+class RerunView(GrowingOutput):
     """Shows each image of a replay; a context manager.
 
     Args:
@@ -42,7 +42,7 @@ class RerunView(Closing):
 
     Raises:
         ConfigError: Rerun is not installed.
-        RecordingError: The file cannot be created.
+        OutputError: The file cannot be created.
     """
 
     def __init__(self, *, live: bool = False, save: Path | None = None) -> None:
@@ -54,12 +54,14 @@ class RerunView(Closing):
                 "'raised-hand-tracker[view]', with Python 3.11 or newer and numpy 2."
             ) from error
         self._rerun = rerun
+        self._place: GrowingFile | None = None
         self._stream = rerun.RecordingStream("raised_hand_tracker")
         self._stream.set_log_time_enabled(False)
         self._stream.set_log_tick_enabled(False)
         sinks = []
         if save is not None:
-            sinks.append(_file_sink(save))
+            self._place = GrowingFile(save)
+            sinks.append(_file_sink(save, self._place.path))
         if live:
             rerun.spawn(connect=False, hide_welcome_screen=True)
             sinks.append(rerun.GrpcSink())
@@ -90,7 +92,17 @@ class RerunView(Closing):
         self._show_states(tracks, result.hand_raised)
 
     def close(self) -> None:
-        """Nothing more comes; the file is complete."""
+        """The file is whole and replaces an earlier one.
+
+        Raises:
+            OutputError: It cannot be renamed.
+        """
+        self.break_off()
+        if self._place is not None:
+            self._place.finish()
+
+    def break_off(self) -> None:
+        """As `GrowingOutput.break_off`."""
         self._stream.flush()
         self._stream.disconnect()
 
@@ -170,17 +182,14 @@ class RerunView(Closing):
             self._served = served
 
 
-def _file_sink(path: Path) -> Any:
+def _file_sink(name: Path, path: Path) -> Any:
     import rerun
 
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.open("wb").close()
     except OSError as error:
-        raise RecordingError(
-            f"{path}: cannot be created ({error.strerror}); "
-            "a file in a folder that may be written is needed."
-        ) from error
+        raise unwritable(name, error) from error
     return rerun.FileSink(path)
 
 

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tracker.evaluation.study import Figure, Study, study_as_dict
-from tracker.report.folder import writing_into
+from tracker.outputs import writing_into
 from tracker.report.study_plot import draw_study
+
+STUDY_FILES = ("study.json", "study.png", "trials.parquet")
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -47,11 +49,11 @@ def write_study(study: Study, folder: str | Path) -> tuple[Path, ...]:
     Raises:
         RecordingError: A file cannot be written.
     """
-    document, picture = Path(folder) / "study.json", Path(folder) / "study.png"
-    with writing_into(folder):
+    document, picture = (Path(folder) / name for name in STUDY_FILES[:2])
+    with writing_into(folder) as new:
         text = json.dumps(study_as_dict(study), indent=1) + "\n"
-        document.write_text(text, encoding="utf-8")
-        draw_study(study, picture)
+        new(document.name).write_text(text, encoding="utf-8")
+        draw_study(study, new(picture.name))
     return document, picture
 
 
@@ -71,10 +73,11 @@ def write_parquet(study: Study, folder: str | Path) -> Path:
     import pyarrow
     from pyarrow import parquet
 
-    path = Path(folder) / "trials.parquet"
-    with writing_into(folder):
+    path = Path(folder) / STUDY_FILES[2]
+    with writing_into(folder) as new:
         trials = pyarrow.array(np.arange(study.trials))
-        parquet.write_table(pyarrow.table({"trial": trials, **study.rows}), path)
+        table = pyarrow.table({"trial": trials, **study.rows})
+        parquet.write_table(table, new(path.name))
     return path
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tracker.errors import RecordingError
 from tracker.evaluation.episode_report import EpisodeReport
+from tracker.outputs import writing_into
 from tracker.report.history import History, Person, RaisedHand, Span
 
 if TYPE_CHECKING:
@@ -71,16 +70,9 @@ def write_summary(summary: dict[str, Any], path: str | Path) -> None:
         RecordingError: The file cannot be written.
     """
     path = Path(path)
-    half = path.with_name(path.name + ".part")
-    try:
-        half.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        os.replace(half, path)
-    except OSError as error:
-        half.unlink(missing_ok=True)
-        raise RecordingError(
-            f"{path}: cannot be written ({error.strerror}); "
-            "a folder that exists, may be written and has room is needed."
-        ) from error
+    text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
+    with writing_into(path.parent) as new:
+        new(path.name).write_text(text, encoding="utf-8")
 
 
 def summary_table(history: History) -> Table:

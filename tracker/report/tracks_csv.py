@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 from pathlib import Path
 
-from tracker.closing import Closing
 from tracker.containers import FrameResult
-from tracker.errors import RecordingError
+from tracker.outputs import GrowingFile, GrowingOutput, unwritable
 
 COLUMNS = (
     "stamp_s", "track_id", "x_m", "y_m", "vx_mps", "vy_mps",
@@ -14,7 +14,7 @@ COLUMNS = (
 )  # fmt: skip
 
 
-class TracksCsv(Closing):
+class TracksCsv(GrowingOutput):
     """Writes confirmed customers line by line; what is written stays readable after a crash.
 
     Args:
@@ -26,10 +26,11 @@ class TracksCsv(Closing):
 
     def __init__(self, path: str | Path) -> None:
         self._path = Path(path)
+        self._place = GrowingFile(self._path)
         try:
-            self._file = self._path.open("wb", buffering=0)  # nothing is left behind in a crash
+            self._file = self._place.path.open("wb", buffering=0)  # a crash loses no line
         except OSError as error:
-            raise self._failure("created", error.strerror) from error
+            raise unwritable(self._path, error) from error
         self._put(",".join(COLUMNS) + "\n")
 
     def write(self, result: FrameResult) -> None:
@@ -54,7 +55,16 @@ class TracksCsv(Closing):
             self._put("".join(lines))
 
     def close(self) -> None:
-        """Nothing more comes."""
+        """The table is whole and replaces an earlier one.
+
+        Raises:
+            OutputError: It cannot be renamed.
+        """
+        self._file.close()
+        self._place.finish()
+
+    def break_off(self) -> None:
+        """As `GrowingOutput.break_off`."""
         self._file.close()
 
     def _put(self, text: str) -> None:
@@ -63,13 +73,8 @@ class TracksCsv(Closing):
             written = self._file.write(line)
         except OSError as error:
             self._file.close()
-            raise self._failure("written", error.strerror) from error
+            raise unwritable(self._path, error) from error
         if written != len(line):
             self._file.close()
-            raise self._failure("written", "the disk took only a part")
-
-    def _failure(self, verb: str, reason: str | None) -> RecordingError:
-        return RecordingError(
-            f"{self._path}: cannot be {verb} ({reason}); "
-            "a folder that exists, may be written and has room is needed."
-        )
+            full = OSError(errno.ENOSPC, "the disk took only a part")
+            raise unwritable(self._path, full)

@@ -10,8 +10,10 @@ import numpy as np
 
 from tracker.config_file import parameter_yaml
 from tracker.evaluation.tuning_result import Tuning, tuning_as_dict
-from tracker.report.folder import writing_into
+from tracker.outputs import writing_into
 from tracker.report.tuning_plot import draw_tuning
+
+TUNING_FILES = ("best.yaml", "tuning.json", "tuning.png")
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -65,15 +67,13 @@ def write_tuning(tuning: Tuning, folder: str | Path) -> tuple[Path, ...]:
         RecordingError: A file cannot be written.
     """
     folder = Path(folder)
-    best, document, picture = (
-        folder / name for name in ("best.yaml", "tuning.json", "tuning.png")
-    )
+    best, document, picture = (folder / name for name in TUNING_FILES)
     title = f"Tuned on {tuning.source}: trial {tuning.best_trial} of {tuning.trials}."
-    with writing_into(folder):
-        best.write_text(parameter_yaml(tuning.best, title), encoding="utf-8")
+    with writing_into(folder) as new:
+        new(best.name).write_text(parameter_yaml(tuning.best, title), encoding="utf-8")
         text = json.dumps(tuning_as_dict(tuning), indent=1) + "\n"
-        document.write_text(text, encoding="utf-8")
-        draw_tuning(tuning, picture)
+        new(document.name).write_text(text, encoding="utf-8")
+        draw_tuning(tuning, new(picture.name))
     return best, document, picture
 
 

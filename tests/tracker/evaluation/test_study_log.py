@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from tracker.errors import ConfigError, RecordingError
-from tracker.evaluation.folder_lock import FolderLock
 from tracker.evaluation.monte_carlo import monte_carlo
 from tracker.evaluation.scenario import SCENARIOS, default_config
 from tracker.evaluation.study import study_as_dict
+from tracker.outputs.folder_lock import FolderLock
 
 ROOT = Path(__file__).parents[3]
 PEOPLE = dataclasses.replace(SCENARIOS["people"], duration_s=2.0)
@@ -24,7 +24,7 @@ FILTER, FILTER_TRIALS = SCENARIOS["outliers"], 2300
 HOLD_THE_FOLDER = """
 import sys, time
 from pathlib import Path
-from tracker.evaluation.folder_lock import FolderLock
+from tracker.outputs.folder_lock import FolderLock
 lock = FolderLock(Path(sys.argv[1]))
 print("held", flush=True)
 time.sleep(60)
@@ -173,5 +173,5 @@ def test_a_damaged_table_is_named(tmp_path, line):
 
 def test_a_folder_that_cannot_be_is_named(tmp_path):
     (tmp_path / "file").write_text("in the way")
-    with pytest.raises(RecordingError, match="file: cannot be read and written"):
+    with pytest.raises(RecordingError, match="file: cannot be written"):
         monte_carlo(PEOPLE, 1, folder=tmp_path / "file")

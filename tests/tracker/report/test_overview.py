@@ -73,9 +73,10 @@ def test_truth_joins_the_lane_of_its_identity_and_the_missed_have_their_own(hist
     assert [[row.person for row in lane.truth] for lane in lanes] == [[70], [], [], [90]]
 
 
-def test_a_folder_that_does_not_exist_is_named(tmp_path, history):
-    with pytest.raises(RecordingError, match="nowhere"):
-        draw_overview(history, tmp_path / "nowhere" / "overview.png")
+def test_a_place_that_is_no_folder_is_named(tmp_path, history):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RecordingError, match="file: cannot be written"):
+        draw_overview(history, tmp_path / "file" / "overview.png")
 
 
 def test_two_drawings_of_one_history_are_the_same(tmp_path, history):

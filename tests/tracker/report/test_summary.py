@@ -75,9 +75,10 @@ def test_a_person_who_never_raised_a_hand_has_no_place(result_of):
     assert summarize(history)["people"][0]["xy_m"] is None
 
 
-def test_a_folder_that_does_not_exist_is_named(tmp_path):
-    with pytest.raises(RecordingError, match="nowhere"):
-        write_summary({}, tmp_path / "nowhere" / "summary.json")
+def test_a_place_that_is_no_folder_is_named(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RecordingError, match="file: cannot be written"):
+        write_summary({}, tmp_path / "file" / "summary.json")
 
 
 def test_the_table_has_a_line_per_raised_hand(history):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tracker.closing import Closing
 from tracker.errors import ConfigError
+from tracker.outputs.unwritable import unwritable
 
 if sys.platform == "win32":
     import msvcrt
@@ -26,15 +27,19 @@ class FolderLock(Closing):
     The file `.lock` stays: were it taken away, two could hold one each.
 
     Args:
-        folder: An existing one.
+        folder: Made where it is missing.
 
     Raises:
         ConfigError: Somebody else writes there.
-        OSError: The file cannot be made.
+        OutputError: Nothing can be written there.
     """
 
     def __init__(self, folder: Path) -> None:
-        self._file = (folder / ".lock").open("ab")
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._file = (folder / ".lock").open("ab")
+        except OSError as error:
+            raise unwritable(folder, error) from error
         try:
             _take(self._file.fileno())
         except (BlockingIOError, PermissionError) as error:
