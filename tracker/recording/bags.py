@@ -1,155 +1,114 @@
-"""How are whole recordings read? rosbag2 folders, .mcap, .db3 and ROS 1 .bag files, by rosbags."""
+"""How are recordings of robots opened? Single files by their suffix, folders by their metadata."""
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Collection, Iterator
-from contextlib import suppress
-from functools import lru_cache
-from pathlib import Path
-from typing import Any, cast
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path, PurePath
+from typing import Any
 
-import apsw
-from rosbags.rosbag1 import Reader as Ros1Reader
-from rosbags.rosbag1 import ReaderError as Ros1Error
-from rosbags.rosbag2 import Reader as Ros2Reader
-from rosbags.rosbag2 import ReaderError as Ros2Error
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from rosbags.typesys.store import Typestore
+import yaml
 
 from tracker.errors import RecordingError
-from tracker.messages import Event, decode, events_from_message
-from tracker.messages.types import MALFORMED, TF_MESSAGE, TF_MESSAGE_ROS1
-from tracker.recording.cut_mcap import CutMcapSource
-from tracker.recording.sources import RawMessage, Row, Source, TopicInfo, seconds_into, unreadable
+from tracker.recording.mcap_file import McapSource
+from tracker.recording.ros1_file import Ros1Source
+from tracker.recording.sources import Row, Source, WrappedSource
+from tracker.recording.sqlite_file import SqliteSource
+from tracker.recording.unpacking import unpacked_file
 
-#: What rosbags raises for files that are damaged, when opened or later on.
-_DAMAGED = (
-    Ros1Error, Ros2Error, apsw.Error, OSError, EOFError, RuntimeError, struct.error,
-    ValueError, TypeError, KeyError, IndexError, AssertionError,
-)  # fmt: skip
-
-_REMEDIES = {
-    ".bag": "Is it a ROS 1 bag? If its recording was cut off, repair it with `rosbag reindex`.",
-    ".db3": (
-        "Is it a rosbag2 database? If it is damaged, repair it with "
-        "`sqlite3 old.db3 .recover | sqlite3 new.db3`."
-    ),
-    ".mcap": "Is it an MCAP file of ROS 2 messages?",
-    "": "Is it a rosbag2 folder? `ros2 bag reindex` renews its metadata.yaml.",
+#: What each suffix, in small letters, is read by.
+_SOURCES: dict[str, Callable[[Path], Source]] = {
+    ".mcap": McapSource,
+    ".db3": SqliteSource,
+    ".bag": Ros1Source,
+    ".active": Ros1Source,
 }
 
+#: Suffixes of files that rosbag2 packed as a whole.
+_PACKED = (".zstd", ".zst")
 
-class BagSource:
-    """Everything that rosbags can open.
+#: A metadata.yaml beyond it is none, in bytes.
+_LARGEST_METADATA = 20_000_000
 
-    Args:
-        path: A rosbag2 folder with its metadata, a .mcap, .db3 or .bag file.
 
-    Raises:
-        RecordingError: It cannot be opened.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        self._is_ros1 = path.suffix == ".bag"
-        self.kind = "ROS 1 bag" if self._is_ros1 else "ROS 2 recording"
-        self.notes: list[str] = []
-        try:
-            self._reader = Ros1Reader(path) if self._is_ros1 else Ros2Reader(path)
-            self._reader.open()
-        except _DAMAGED as error:
-            remedy = _REMEDIES["" if path.is_dir() else path.suffix]
-            raise unreadable(path, error, remedy) from error
-        self.topics = {
-            topic: TopicInfo(info.msgtype or "several types", info.msgcount)
-            for topic, info in self._reader.topics.items()
-        }
-        is_empty = self._reader.message_count == 0
-        self.start_ns = 0 if is_empty else self._reader.start_time
-        self.end_ns = 0 if is_empty else self._reader.end_time - 1
-
-    def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
-        """As `Source.messages`."""
-        wanted = [item for item in self._reader.connections if item.topic in topics]
-        if not wanted:
-            return
-        log_ns = self.start_ns
-        stream = self._reader.messages(connections=cast(Any, wanted))
-        while True:
-            try:
-                connection, log_ns, data = next(stream)
-            except StopIteration:
-                return
-            except _DAMAGED as error:
-                raise RecordingError(
-                    f"{self._path}: is damaged {seconds_into(log_ns, self.start_ns)} after its "
-                    f"beginning ({error}). What came before was read."
-                ) from error
-            yield RawMessage(connection.topic, connection.msgtype, log_ns, data)
-
-    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
-        """As `Source.read`."""
-        if not self._is_ros1:
-            return decode(
-                message.type_name, message.data, is_static=is_static, max_pixels=max_pixels
-            )
-        try:
-            said = _ros1_typestore().deserialize_ros1(message.data, message.type_name)
-        except MALFORMED as error:
-            raise RecordingError(
-                f"{len(message.data)} bytes came as ROS 1 {message.type_name}; they do not hold "
-                f"one ({error})."
-            ) from error
-        return events_from_message(
-            message.type_name, said, is_static=is_static, max_pixels=max_pixels
-        )
-
-    def close(self) -> None:
-        """As `Source.close`."""
-        self._reader.close()
+def is_bag_file(path: Path) -> bool:
+    """By its name, packed or not: .mcap, .db3, .bag, .bag.active, .mcap.zstd ..."""
+    return _suffix(path) in _SOURCES
 
 
 def open_bag(path: Path) -> Source:
-    """Open a recording, whole or not.
+    """Open a recording of a robot, whole or not.
 
-    A .mcap file that lost its end is read up to there; a folder without usable metadata.yaml (a
-    recorder that was killed) is read file by file.
+    Args:
+        path: A file that `is_bag_file`, or a folder of them.
 
     Raises:
         RecordingError: Nothing of it can be read.
     """
-    try:
-        return BagSource(path)
-    except RecordingError as error:
-        if path.is_file() and path.suffix == ".mcap":
-            return CutMcapSource(path, str(error.__cause__))
-        files = bag_files(path) if path.is_dir() else []
-        if not files:
-            raise
-        has_metadata = (path / "metadata.yaml").exists()
-        state = "cannot be used" if has_metadata else "is missing"
-        parts: list[Source] = []
-        try:
-            parts.extend(open_bag(file) for file in files)
-        except RecordingError:
-            for part in parts:
-                with suppress(RecordingError):
-                    part.close()
-            raise
-        return Row("ROS 2 recording", parts, [f"{path}: metadata.yaml {state}; read by file."])
+    return _open_folder(path) if path.is_dir() else _open_file(path)
 
 
 def bag_files(folder: Path) -> list[Path]:
     """The parts of a rosbag2 recording, in the order in which the recorder numbered them."""
-    found = [file for file in folder.iterdir() if file.suffix in (".mcap", ".db3")]
+    found = [file for file in folder.iterdir() if _suffix(file) in (".mcap", ".db3")]
     return sorted(found, key=lambda file: (len(file.name), file.name))
 
 
-@lru_cache(maxsize=1)
-def _ros1_typestore() -> Typestore:
-    store = get_typestore(Stores.ROS1_NOETIC)
-    for name in (TF_MESSAGE, TF_MESSAGE_ROS1):
-        definition = "geometry_msgs/TransformStamped[] transforms\n"
-        store.register(get_types_from_msg(definition, name))
-    return store
+def _suffix(path: Path) -> str:
+    suffix = path.suffix.lower()
+    return PurePath(path.stem).suffix.lower() if suffix in _PACKED else suffix
+
+
+def _open_file(path: Path) -> Source:
+    kind = _SOURCES[_suffix(path)]
+    if path.suffix.lower() not in _PACKED:
+        return kind(path)
+    with ExitStack() as opened:
+        unpacked = opened.enter_context(unpacked_file(path))
+        try:
+            source = kind(unpacked)
+        except RecordingError as error:
+            raise RecordingError(str(error).replace(str(unpacked), str(path))) from error
+        opened.callback(source.close)
+        return WrappedSource(source, unpacked, path, opened.pop_all())
+
+
+def _open_folder(folder: Path) -> Source:
+    files, notes = _listed(folder)
+    parts: list[Source] = []
+    broken: list[str] = []
+    for file in files:
+        try:
+            parts.append(_open_file(file))
+        except RecordingError as error:
+            broken.append(str(error))
+    if not parts:
+        reason = broken[0] if broken else f"{folder}: holds no recording"
+        raise RecordingError(f"{reason} `ros2 bag reindex` renews a folder's metadata.yaml.")
+    return Row("ROS 2 recording", parts, notes, broken)
+
+
+def _listed(folder: Path) -> tuple[list[Path], list[str]]:
+    """The files that metadata.yaml lists, or all there are; and what is odd about them."""
+    there = bag_files(folder)
+    metadata = folder / "metadata.yaml"
+    names = _names_in(metadata) if metadata.exists() else []
+    listed = [folder / PurePath(name).name for name in names]
+    if listed and all(file.is_file() and is_bag_file(file) for file in listed):
+        return listed, []
+    state = "cannot be used" if metadata.exists() else "is missing"
+    missing = [file.name for file in listed if not file.is_file()]
+    if missing:
+        state = f"names {missing[0]}, which is not there"
+    return there, [f"{folder}: metadata.yaml {state}; read by file."]
+
+
+def _names_in(metadata: Path) -> list[str]:
+    try:
+        if metadata.stat().st_size > _LARGEST_METADATA:
+            return []
+        said: Any = yaml.safe_load(metadata.read_text(encoding="utf-8"))
+        names = said["rosbag2_bagfile_information"]["relative_file_paths"]
+    except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError, RecursionError):
+        return []
+    return [str(name) for name in names] if isinstance(names, list) else []

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tracker.errors import RecordingError
 from tracker.messages.picture_size import MAX_PIXELS
-from tracker.recording.bags import bag_files, open_bag
+from tracker.recording.bags import bag_files, is_bag_file, open_bag
 from tracker.recording.pictures import (
     PHOTO_SUFFIXES,
     VIDEO_SUFFIXES,
@@ -17,7 +17,7 @@ from tracker.recording.pictures import (
 from tracker.recording.recording import Recording, Topics
 from tracker.recording.sources import Source
 
-_BAG_SUFFIXES = frozenset({".mcap", ".db3", ".bag"})
+_BAG_SUFFIXES = frozenset({".mcap", ".db3", ".bag", ".mcap.zstd", ".db3.zstd"})
 
 
 def open_recording(
@@ -32,7 +32,7 @@ def open_recording(
     """Open a recording for reading; use it in a `with` block.
 
     Args:
-        path: A rosbag2 folder, a .mcap, .db3 or ROS 1 .bag file, a video, a photo or a folder of
+        path: A rosbag2 folder, a .mcap, .db3 (also packed, .zstd) or ROS 1 .bag file, a video,
             photos.
         topics: Where it holds what; by default the specification's names.
         with_truth: Also deliver simulated people.
@@ -70,7 +70,7 @@ def _open_source(path: Path, image_topic: str, photo_period_s: float, max_pixels
                 f"metadata.yaml, or with {', '.join(sorted(PHOTO_SUFFIXES))} files."
             )
         return PhotoSource(photos, image_topic, photo_period_s)
-    if suffix in _BAG_SUFFIXES:
+    if is_bag_file(path):
         return open_bag(path)
     if suffix in VIDEO_SUFFIXES:
         return VideoSource(path, image_topic, max_pixels)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 from tracker.errors import RecordingError
@@ -55,7 +57,7 @@ class Source(Protocol):
         """The messages of some topics in log-time order, from the beginning.
 
         Raises:
-            RecordingError: The file is damaged; everything before the damage has been yielded.
+            RecordingError: The file is damaged; everything that can be read has been yielded.
         """
 
     def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
@@ -70,25 +72,41 @@ class Source(Protocol):
 
 
 class Row:
-    """Several sources one after the other: the parts of one recording."""
+    """Several sources one after the other: the parts of one recording.
 
-    def __init__(self, kind: str, parts: list[Source], notes: list[str]) -> None:
+    Args:
+        kind: What the user would call it.
+        parts: In the order of recording.
+        notes: What was odd about the whole, as sentences.
+        broken: What is wrong with parts that are left out, as sentences.
+    """
+
+    def __init__(
+        self, kind: str, parts: list[Source], notes: list[str], broken: Sequence[str] = ()
+    ) -> None:
         self.kind = kind
-        self._parts = parts
+        self._parts, self._broken = parts, broken
         self.notes = notes + [note for part in parts for note in part.notes]
-        self.topics: dict[str, TopicInfo] = {}
-        for part in parts:
-            for topic, info in part.topics.items():
-                before = self.topics[topic].count if topic in self.topics else 0
-                self.topics[topic] = TopicInfo(info.type_name, before + info.count)
+        self.topics = topics_of(
+            (topic, info.type_name, info.count)
+            for part in parts
+            for topic, info in part.topics.items()
+        )
         filled = [part for part in parts if part.topics]
         self.start_ns = min((part.start_ns for part in filled), default=0)
         self.end_ns = max((part.end_ns for part in filled), default=0)
 
     def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
-        """As `Source.messages`."""
+        """As `Source.messages`; damage to one part leaves the others to be read."""
+        errors = [*self._broken]
         for part in self._parts:
-            yield from part.messages(topics)
+            try:
+                yield from part.messages(topics)
+            except RecordingError as error:
+                errors.append(str(error))
+        if errors:
+            more = f" ... and {len(errors) - 1} more of its files" if errors[1:] else ""
+            raise RecordingError(errors[0] + more)
 
     def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
         """As `Source.read`; the parts are of one kind."""
@@ -98,6 +116,49 @@ class Row:
         """As `Source.close`."""
         for part in self._parts:
             part.close()
+
+
+class WrappedSource:
+    """A source that lies in a temporary file; told under its own name.
+
+    Args:
+        source: What is read.
+        place: Where it lies.
+        name: What the user calls it.
+        opened: What ends with it.
+    """
+
+    def __init__(self, source: Source, place: Path, name: Path, opened: ExitStack) -> None:
+        self._source, self._opened = source, opened
+        self._place, self._name = str(place), str(name)
+        self.kind, self.topics = source.kind, source.topics
+        self.notes = [note.replace(self._place, self._name) for note in source.notes]
+        self.start_ns, self.end_ns = source.start_ns, source.end_ns
+
+    def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
+        """As `Source.messages`."""
+        try:
+            yield from self._source.messages(topics)
+        except RecordingError as error:
+            raise RecordingError(str(error).replace(self._place, self._name)) from error
+
+    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+        """As `Source.read`."""
+        return self._source.read(message, is_static=is_static, max_pixels=max_pixels)
+
+    def close(self) -> None:
+        """As `Source.close`."""
+        self._opened.close()
+
+
+def topics_of(rows: Iterable[tuple[str, str, int]]) -> dict[str, TopicInfo]:
+    """Topics by name from (name, type, count) of each channel or file; counts add up."""
+    topics: dict[str, TopicInfo] = {}
+    for topic, type_name, count in rows:
+        before = topics.get(topic, TopicInfo(type_name, 0))
+        same = before.type_name == type_name
+        topics[topic] = TopicInfo(type_name if same else "several types", before.count + count)
+    return topics
 
 
 def seconds_into(log_ns: int, start_ns: int) -> str:
