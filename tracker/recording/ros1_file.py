@@ -93,7 +93,8 @@ class Ros1Source:
         layout = self._layout
         if layout.is_indexed and not layout.damages:
             return layout.blocks, layout.counts
-        found, counts = [], Counter[int]()
+        found: list[Block] = []
+        counts = Counter[int]()
         for block in layout.blocks:
             try:
                 parts = self._parts(block)
