@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 import typer
-import yaml
 
 from nodes.core import NodeCore
+from nodes.dds.names import Names
 from nodes.dds.node import Node
 from nodes.dds.parameters import ParameterServer
 from nodes.dds.profiles import CLOCK, ROSOUT
@@ -39,6 +39,7 @@ from tracker.errors import ConfigError, TrackerError
 from tracker.messages import Encoded
 from tracker.messages.encode import header
 from tracker.messages.types import build, deserialize, serialize
+from tracker.parameter_file import is_ours, read_assignment, read_parameters
 
 _LOG_TYPE = "rcl_interfaces/msg/Log"
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
@@ -175,8 +176,11 @@ class DdsHandDetector:
 
 def command(
     params_file: Annotated[
-        Path | None,
-        typer.Option("--params-file", help="ROS parameter file, as config/hand_detector.yaml."),
+        list[Path] | None,
+        typer.Option(
+            "--params-file",
+            help="ROS parameter file, as config/hand_detector.yaml; may be repeated.",
+        ),
     ] = None,
     param: Annotated[
         list[str] | None,
@@ -209,18 +213,12 @@ def command(
 
     from tracker.cli.progress import fetch_models_if_needed
 
-    config, in_file = Config(), False
-    if params_file is not None:
-        config, in_file = Config.from_yaml(params_file), _sim_time_in(params_file)
-    changes = _assignments(param or [])
-    sim_time = changes.pop("use_sim_time", use_sim_time or in_file)
-    if not isinstance(sim_time, bool):
-        raise ConfigError(f"`use_sim_time` is {sim_time!r}; allowed is true or false.")
-    config = config.replace(**changes)
+    name = Names(NODE_NAME, namespace, remap or ()).full_node_name
+    config, sim_time = _parameters(params_file or [], param or [], name)
     fetch_models_if_needed(Console(stderr=True))
     with _stop_signals() as stop:
         node = DdsHandDetector(
-            config, namespace=namespace, remaps=remap or (), use_sim_time=sim_time
+            config, namespace=namespace, remaps=remap or (), use_sim_time=use_sim_time or sim_time
         )
         if not node.run(stop):
             sys.exit(1)
@@ -261,27 +259,22 @@ def _stop_signals() -> Iterator[threading.Event]:
             signal.signal(number, handler)
 
 
-def _assignments(texts: list[str]) -> dict[str, Any]:
-    changes = {}
-    for text in texts:
-        name, separator, value = text.partition(":=")
-        if not separator:
-            raise ConfigError(f"-p is {text!r}; needed is NAME:=VALUE.")
-        try:
-            changes[name] = yaml.safe_load(value)
-        except yaml.YAMLError as error:
-            raise ConfigError(f"-p is {text!r}; its value is no YAML.") from error
-    return changes
+def _parameters(files: list[Path], assignments: list[str], node: str) -> tuple[Config, bool]:
+    """The configuration that files and assignments give to a node, and whether time is simulated.
 
-
-def _sim_time_in(params_file: Path) -> bool:
-    """Whether a parameter file, checked before, asks for simulated time."""
-    document = yaml.safe_load(params_file.read_text(encoding="utf-8"))
-    found = False
-    for name in ("**", "/**", f"/{NODE_NAME}", NODE_NAME):
-        section = document.get(name) or {}
-        found = bool(section.get("ros__parameters", {}).get("use_sim_time", found))
-    return found
+    Raises:
+        ConfigError: A file or an assignment is off.
+    """
+    found: dict[str, Any] = {}
+    for path in files:
+        found |= read_parameters(path, node)
+    found |= dict(read_assignment(text, node) for text in assignments)
+    sim_time = found.get("use_sim_time", False)
+    if not isinstance(sim_time, bool):
+        raise ConfigError(f"`use_sim_time` is {sim_time!r}; allowed is true or false.")
+    origins = [*map(str, files), *(["-p"] if assignments else [])]
+    ours = {name: value for name, value in found.items() if is_ours(name)}
+    return Config.from_mapping(ours, origin=", ".join(origins) or "parameters"), sim_time
 
 
 def _trigger(success: bool, message: str) -> Any:

@@ -9,10 +9,7 @@ from typing import Any, NamedTuple
 
 from tracker.config import Config, allowed_values, parameter_extra
 from tracker.errors import ConfigError
-
-#: Parameters of every ROS node, which are none of ours.
-ROS_OWN = ("use_sim_time", "start_type_description_service")
-ROS_OWN_PREFIXES = ("qos_overrides.",)
+from tracker.parameter_file import is_ours
 
 
 class Descriptor(NamedTuple):
@@ -66,11 +63,6 @@ def changed(config: Config, changes: dict[str, Any]) -> Config:
             "start it anew with the new value."
         )
     return config.replace(**ours) if ours else config
-
-
-def is_ours(name: str) -> bool:
-    """Whether a parameter is the tracker's, rather than of every ROS node."""
-    return name not in ROS_OWN and not name.startswith(ROS_OWN_PREFIXES)
 
 
 def _descriptor(name: str) -> Descriptor:

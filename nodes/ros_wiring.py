@@ -32,7 +32,7 @@ from visualization_msgs.msg import MarkerArray
 
 from nodes.core import NodeCore
 from nodes.diagnostics import REPORT_PERIOD_S
-from nodes.parameters import Descriptor, changed, descriptors, is_ours
+from nodes.parameters import Descriptor, changed, descriptors
 from nodes.qos import PROFILES, Profile
 from nodes.tf2_transforms import Tf2Transforms
 from nodes.topics import (
@@ -47,6 +47,7 @@ from nodes.topics import (
 from tracker.config import Config
 from tracker.errors import ConfigError
 from tracker.messages import Encoded
+from tracker.parameter_file import is_ours
 
 _CLASSES = {
     f"{package}/msg/{kind.__name__}": kind

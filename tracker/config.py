@@ -12,9 +12,9 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from tracker.errors import ConfigError
-
-NODE_NAME = "hand_detector"
+from tracker.errors import ConfigError, shown
+from tracker.parameter_file import NODE_NAME as NODE_NAME  # where it is looked for
+from tracker.parameter_file import is_ours, read_parameters
 
 
 @dataclass(frozen=True, slots=True)
@@ -583,32 +583,23 @@ class Config(BaseModel):
             raise ConfigError(f"{origin}: {reasons}") from error
 
     @classmethod
-    def from_yaml(cls, path: str | Path) -> Config:
+    def from_yaml(cls, path: str | Path, node: str | None = None) -> Config:
         """Read a ROS parameter file: `hand_detector: ros__parameters: ...`.
 
-        `/hand_detector`, `/**` and `**` are understood as node names; other nodes' parameters in
-        the same file are left alone, and so is ROS's own `use_sim_time`.
+        Names with namespaces and wildcards (`/robot1/hand_detector`, `/**`) are understood as rcl
+        does; other nodes' parameters in the same file are left alone, and so are ROS's own, such
+        as `use_sim_time`.
+
+        Args:
+            path: The file.
+            node: Full name of the node; by default the one `hand_detector` that the file has.
 
         Raises:
             ConfigError: The file cannot be read, is no such file, or a parameter is off.
         """
-        import yaml  # the core imports with numpy, scipy and pydantic alone
-
-        path = Path(path)
-        try:
-            document = yaml.safe_load(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            raise ConfigError(f"{path}: cannot be read ({error.strerror}).") from error
-        except UnicodeDecodeError as error:
-            raise ConfigError(f"{path}: is no UTF-8 text; a YAML file is needed.") from error
-        except yaml.YAMLError as error:
-            mark = getattr(error, "problem_mark", None)
-            where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-            what = getattr(error, "problem", None) or "syntax error"
-            raise ConfigError(f"{path}: is no YAML{where}: {what}.") from error
-        except ValueError as error:  # a date that is none, for one
-            raise ConfigError(f"{path}: holds a value that is none ({error}).") from error
-        return cls.from_mapping(_node_parameters(document, path), origin=str(path))
+        found = read_parameters(Path(path), node)
+        ours = {name: value for name, value in found.items() if is_ours(name)}
+        return cls.from_mapping(ours, origin=str(path))
 
     def replace(self, **changes: Any) -> Config:
         """The same configuration with some parameters changed, checked again.
@@ -651,37 +642,13 @@ def parameter_search(name: str) -> Search | None:
     return None if search is None else Search(**search)
 
 
-def _node_parameters(document: Any, path: Path) -> dict[str, Any]:
-    names = (NODE_NAME, f"/{NODE_NAME}", "/**", "**")
-    if not isinstance(document, dict):
-        raise ConfigError(
-            f"{path}: holds no parameters; `{NODE_NAME}: ros__parameters:` is needed."
-        )
-    found: dict[str, Any] = {}
-    nodes = [name for name in reversed(names) if name in document]
-    if not nodes:
-        raise ConfigError(
-            f"{path}: names the nodes {', '.join(map(str, document))}; needed is `{NODE_NAME}:`."
-        )
-    for name in nodes:
-        node = document[name]
-        parameters = node.get("ros__parameters") if isinstance(node, dict) else None
-        if not isinstance(parameters, dict):
-            raise ConfigError(
-                f"{path}: `{name}:` has no `ros__parameters:` with parameters below."
-            )
-        found.update(parameters)
-    found.pop("use_sim_time", None)
-    return found
-
-
 def _reason(item: Any) -> str:
     name = ".".join(map(str, item["loc"]))
     if name and name not in Config.model_fields:
         return f"unknown parameter `{name}`{_suggestion(name)}"
     if not name:
         return str(item["msg"]).removeprefix("Value error, ")
-    return f"`{name}` is {item['input']!r}; allowed is {allowed_values(name)}"
+    return f"`{name}` is {shown(item['input'])}; allowed is {allowed_values(name)}"
 
 
 def _suggestion(name: str) -> str:

@@ -141,10 +141,10 @@ def test_the_node_may_be_named_in_several_ways(write, node):
     assert Config.from_yaml(write(text)).processing_rate == 7.0
 
 
-def test_the_nodes_own_section_wins_over_the_wildcard(write):
+def test_later_sections_of_a_file_win(write):
     text = (
-        "hand_detector:\n  ros__parameters: {processing_rate: 7.0}\n"
         "/**:\n  ros__parameters: {processing_rate: 3.0, downscale_factor: 4, use_sim_time: yes}\n"
+        "hand_detector:\n  ros__parameters: {processing_rate: 7.0}\n"
     )
     config = Config.from_yaml(write(text))
     assert (config.processing_rate, config.downscale_factor) == (7.0, 4)
@@ -160,12 +160,12 @@ def test_other_nodes_in_the_same_file_are_left_alone(write, section_12):
     [
         ("", "holds no parameters"),
         ("- 1\n", "holds no parameters"),
-        ("amcl: {}\n", "names the nodes amcl; needed is `hand_detector:`"),
+        ("amcl: {}\n", "names the nodes /amcl; needed is `hand_detector:`"),
         ("hand_detector: {}\n", "has no `ros__parameters:`"),
         ("hand_detector:\n  ros__parameters: 3\n", "has no `ros__parameters:`"),
         ("hand_detector:\n  ros__parameters:\n    camera_fx: [1, 2\n", "line 4"),
         ("hand_detector:\n  ros__parameters:\n\tcamera_fx: 1\n", "line 3"),
-        ("hand_detector:\n  ros__parameters:\n    camera_fx: 2024-13-45\n", "month"),
+        ("hand_detector:\n  ros__parameters:\n    camera_fx: 2024-13-45\n", "allowed is a number"),
         ("hand_detector: \x07\n", "is no YAML"),
     ],
     ids=[

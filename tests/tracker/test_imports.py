@@ -14,7 +14,8 @@ SOURCES = sorted((ROOT / "tracker").rglob("*.py"))
 #: From the ground up. A file may import its own room and the floors below, never its neighbors.
 FLOORS = [
     {"errors", "closing", "notes", "clock_offset"},
-    {"outputs"},
+    {"outputs", "yaml_reading"},
+    {"parameter_file"},
     {"containers", "config"},
     {"geometry", "config_file", "lens"},
     {"camera", "transforms"},

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from tracker.config import Config
 from tracker.errors import ConfigError
+from tracker.parameter_file import read_assignment
 
 console = Console()
 errors = Console(stderr=True)
@@ -45,15 +46,8 @@ def parameters_from(
     Raises:
         ConfigError: The file or an assignment is off.
     """
-    import yaml
-
     chosen = Config.from_yaml(config) if config is not None else default or Config()
-    changes: dict[str, Any] = {}
-    for assignment in assignments or []:
-        name, separator, text = assignment.partition(":=")
-        if not separator:
-            raise ConfigError(f"--param is {assignment!r}; needed is NAME:=VALUE.")
-        changes[name] = yaml.safe_load(text)
+    changes = dict(read_assignment(text) for text in assignments or [])
     return chosen.replace(**changes) if changes else chosen
 
 

@@ -14,7 +14,8 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from tracker.errors import SceneError
+from tracker.errors import ConfigError, SceneError, shown
+from tracker.yaml_reading import read_yaml
 
 #: How long an arm takes from the lap to beside the head; a guess from how people wave to a waiter.
 ARM_MOTION_S = 0.4
@@ -87,7 +88,7 @@ class PersonLook(_Part):
 class Person(_Part):
     """Somebody who walks, stops, sits, raises a hand."""
 
-    id: int = Field(ge=1)
+    id: int = Field(ge=1, lt=2**31)
     name: str = ""
     path: Annotated[tuple[WayPoint, ...], Field(strict=False, min_length=1)]
     raises: Annotated[tuple[Raise, ...], Field(strict=False)] = ()
@@ -242,22 +243,11 @@ def load_scene(name_or_path: str | Path) -> Scene:
         SceneError: There is no such scene or file, it is no YAML, or something in it is off; the
             message names each such key, its value and what is allowed.
     """
-    import yaml
-
     path = _find(name_or_path)
     try:
-        document = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read ({error.strerror}).") from error
-    except UnicodeDecodeError as error:
-        raise SceneError(f"{path}: is no UTF-8 text; a YAML file is needed.") from error
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        what = getattr(error, "problem", None) or "syntax error"
-        raise SceneError(f"{path}: is no YAML{where}: {what}.") from error
-    except ValueError as error:  # a date that is none, for one
-        raise SceneError(f"{path}: holds a value that is none ({error}).") from error
+        document = read_yaml(path)
+    except ConfigError as error:
+        raise SceneError(str(error)) from error
     return scene_from_mapping(document, origin=str(path))
 
 
@@ -320,7 +310,7 @@ def _reason(item: Any) -> str:
     if item["type"] == "string_pattern_mismatch":
         message = "a color like '#d6a078'"
     allowed = message.removeprefix("Input should be ")
-    return f"`{key}` is {item['input']!r}; allowed is {allowed}"
+    return f"`{key}` is {shown(item['input'])}; allowed is {allowed}"
 
 
 def _suggestion(name: str) -> str:

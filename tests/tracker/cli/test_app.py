@@ -63,6 +63,26 @@ def test_a_wrong_parameter_file_is_one_line_and_status_2(run, tmp_path, model_st
     assert named in complaint(error)
 
 
+@pytest.mark.parametrize(
+    ("assignment", "named"),
+    [
+        ("lower_streak:=[", "-p lower_streak:=[: is no YAML"),
+        ("lower_streak:=%x", "is no YAML"),
+        ("lower_streak:=*x", "`*x`, which stands for nothing"),
+        ("lower_streak:=2031-02-03", "'2031-02-03'; allowed is a whole number"),
+        ("lower_streak:={a: 1}", "{'a': 1}; allowed is a whole number"),
+        ("lower_streak:=3e0", "3.0; allowed is a whole number"),
+        ("lower_streak:=" + "[" * 5000, "nest"),
+        ("lower_streak:=" + "9" * 5000, "allowed is a whole number"),
+        ("amcl:lower_streak:=3", "for the node /amcl"),
+    ],
+)
+def test_a_wrong_assignment_is_one_line_and_status_2(run, assignment, named):
+    status, _, error = run("monte-carlo", "outliers", "-n", 1, "-p", assignment)
+    assert status == 2
+    assert named in complaint(error)
+
+
 @pytest.mark.model
 def test_bad_recordings_are_one_line_and_status_1(run, tmp_path, model_store):
     (tmp_path / "broken.bag").write_bytes(b"#ROSBAG V2.0\nnonsense")
