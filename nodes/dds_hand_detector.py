@@ -34,12 +34,14 @@ from nodes.topics import (
     Input,
     InputTopic,
 )
+from tracker.cli.options import VersionOption, help_of
 from tracker.config import NODE_NAME, Config
 from tracker.errors import ConfigError, TrackerError
 from tracker.messages import Encoded
 from tracker.messages.encode import header
 from tracker.messages.types import build, deserialize, serialize
 from tracker.parameter_file import is_ours, read_assignment, read_parameters
+from tracker.program import run_program
 
 _LOG_TYPE = "rcl_interfaces/msg/Log"
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
@@ -179,22 +181,30 @@ def command(
         list[Path] | None,
         typer.Option(
             "--params-file",
+            metavar="FILE",
             help="ROS parameter file, as config/hand_detector.yaml; may be repeated.",
         ),
     ] = None,
     param: Annotated[
         list[str] | None,
-        typer.Option("--param", "-p", help="One parameter, as -p processing_rate:=8.0."),
+        typer.Option(
+            "--param", "-p", metavar="SETTING", help="One parameter: -p processing_rate:=8.0."
+        ),
     ] = None,
     remap: Annotated[
         list[str] | None,
-        typer.Option("--remap", "-r", help="One name, as -r image_raw:=/camera/image_raw."),
+        typer.Option(
+            "--remap", "-r", metavar="FROM:=TO", help="One name: -r image_raw:=/camera/image_raw."
+        ),
     ] = None,
     namespace: Annotated[str, typer.Option(help="Of the node and its relative names.")] = "/",
-    use_sim_time: Annotated[bool, typer.Option(help="Take the time from /clock.")] = False,
+    use_sim_time: Annotated[
+        bool, typer.Option("--use-sim-time", help="Take the time from /clock.")
+    ] = False,
     ros_args: Annotated[
         bool, typer.Option("--ros-args", help="Understood and not needed.")
     ] = False,
+    version: VersionOption = False,
 ) -> None:
     """Run the node `hand_detector` without ROS: cameras and scanners in, customers out.
 
@@ -226,22 +236,15 @@ def command(
 
 def main() -> NoReturn:
     """Run the command; every foreseen failure is one line and a status, as of `raised-hand`."""
-    try:
-        _app()
-    except ConfigError as error:
-        _fail(error, 2)
-    except TrackerError as error:
-        _fail(error, 1)
-    sys.exit(0)
+    run_program("raised-hand-dds", app)
 
 
-_app = typer.Typer(
+app = typer.Typer(
     name="raised-hand-dds",
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-_app.command()(command)
+app.command(help=help_of(command))(command)
 
 
 @contextmanager
@@ -279,11 +282,6 @@ def _parameters(files: list[Path], assignments: list[str], node: str) -> tuple[C
 
 def _trigger(success: bool, message: str) -> Any:
     return build("std_srvs/srv/Trigger_Response", success=success, message=message)
-
-
-def _fail(error: TrackerError, status: int) -> NoReturn:
-    print(f"raised-hand-dds: {error}", file=sys.stderr)
-    sys.exit(status)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from rclpy.signals import SignalHandlerOptions
 from nodes.ros_wiring import RosWiring, declare_parameters
 from tracker.config import NODE_NAME
 from tracker.errors import ConfigError, TrackerError
+from tracker.program import print_version
 
 
 class HandDetector(Node):
@@ -55,6 +56,7 @@ def run(make_node: Callable[[], HandDetector], args: list[str] | None = None) ->
     The executor has a thread of its own, and this one waits for signals, so that Ctrl-C is heard
     at once and the last messages can still be published.
     """
+    print_version("--version" in (sys.argv if args is None else args))
     is_over = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: is_over.set())

@@ -1,15 +1,16 @@
-"""The command `raised-hand-dds`, as far as it goes where its extra is not installed."""
+"""The command `raised-hand-dds`, from its first moment, and where its extra is not installed."""
 
-import sys
+from typing import NoReturn
 
-from tracker.errors import ConfigError
+from tracker.program import run_program
 
 
-def main() -> None:
+def main() -> NoReturn:
     """Run the node, or say in one line what it lacks."""
-    try:
-        from nodes.dds_hand_detector import main as run
-    except ConfigError as error:
-        print(f"raised-hand-dds: {error}", file=sys.stderr)
-        sys.exit(2)
-    run()
+    run_program("raised-hand-dds", _body)
+
+
+def _body() -> None:
+    from nodes.dds_hand_detector import app
+
+    app()

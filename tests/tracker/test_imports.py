@@ -14,7 +14,7 @@ SOURCES = sorted((ROOT / "tracker").rglob("*.py"))
 #: From the ground up. A file may import its own room and the floors below, never its neighbors.
 FLOORS = [
     {"errors", "closing", "notes", "clock_offset"},
-    {"outputs", "yaml_reading"},
+    {"outputs", "yaml_reading", "program"},
     {"parameter_file"},
     {"containers", "config"},
     {"geometry", "config_file", "lens"},

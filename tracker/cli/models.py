@@ -7,13 +7,12 @@ from typing import Annotated
 
 import typer
 
-from tracker.cli.options import JsonOption, console, errors, print_json
+from tracker.cli.options import JsonOption, console, errors, help_of, print_json
 from tracker.outputs import check_inputs_stay
 
 models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
 
 
-@models_app.command("fetch")
 def models_fetch(
     source: Annotated[
         Path | None,
@@ -41,14 +40,14 @@ def models_fetch(
     console.print(f"models are in {store.directory}", highlight=False, soft_wrap=True)
 
 
-@models_app.command("list")
 def models_list(as_json: JsonOption = False) -> None:
     """Show which models are there, and where."""
     from rich.table import Table
 
     from tracker.perception.models import ModelStore
 
-    rows = ModelStore().status()
+    store = ModelStore()
+    rows = store.status()
     if as_json:
         print_json(
             [
@@ -61,5 +60,10 @@ def models_list(as_json: JsonOption = False) -> None:
     table = Table("model", "state", "size", "file")
     for row in rows:
         size = f"{row.size_bytes / 1e6:.1f} MB" if row.size_bytes else ""
-        table.add_row(row.name, row.state.value, size, str(row.path))
+        table.add_row(row.name, row.state.value, size, row.path.name)
     console.print(table)
+    console.print(f"in {store.directory}", highlight=False, soft_wrap=True)
+
+
+models_app.command("fetch", help=help_of(models_fetch))(models_fetch)
+models_app.command("list", help=help_of(models_list))(models_list)

@@ -4,8 +4,12 @@ import sys
 import cv2
 import numpy as np
 import pytest
+from typer.main import get_command
 
+import tracker
 from tracker import CameraImage
+from tracker.cli.commands import app
+from tracker.perception.models import ModelStore
 from tracker.recording import RecordingWriter
 
 
@@ -36,6 +40,39 @@ def test_help_explains_every_command(run, words):
     status, output, _ = run(*words, "--help")
     assert status == 0
     assert "Usage" in output
+
+
+def test_paragraphs_of_a_help_are_left_to_the_terminal_to_wrap():
+    def texts(group):
+        for command in getattr(group, "commands", {}).values():
+            yield command.help or ""
+            yield from texts(command)
+
+    paragraphs = [part for text in texts(get_command(app)) for part in text.split("\n\n")]
+    assert len(paragraphs) > 20
+    assert [part for part in paragraphs if "\n" in part and not part.startswith(" ")] == []
+
+
+@pytest.mark.parametrize("program", ["raised-hand", "raised-hand-dds"])
+def test_every_program_tells_its_version(run, capsys, monkeypatch, program):
+    if program == "raised-hand":
+        status, output, _ = run("--version")
+    else:
+        pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
+        from nodes.raised_hand_dds import main
+
+        monkeypatch.setattr(sys, "argv", [program, "--version"])
+        with pytest.raises(SystemExit) as stopped:
+            main()
+        status, output = stopped.value.code, capsys.readouterr().out
+    assert status == 0
+    assert output == f"raised-hand-tracker {tracker.__version__}\n"
+
+
+def test_the_list_of_models_cuts_no_name(run):
+    _, output, _ = run("models", "list")
+    assert "…" not in output
+    assert f"in {ModelStore().directory}\n" in output
 
 
 def test_an_unknown_command_is_a_usage_error(run):

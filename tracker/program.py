@@ -1,0 +1,107 @@
+"""How does a program of ours end? In one line and a status, whatever stops it.
+
+Exit status: 0 done, 1 something failed or the input was broken, 2 the words on the command line
+were wrong, 130 stopped by Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+import re
+import signal
+import sys
+from collections.abc import Callable
+from typing import NoReturn
+
+from tracker.errors import ConfigError, SceneError, TrackerError
+
+INTERRUPTED = 130
+
+
+def run_program(name: str, body: Callable[[], None]) -> NoReturn:
+    """Run a program, and leave.
+
+    Args:
+        name: The command, first word of what is said.
+        body: All of it, with its imports, in which Ctrl-C may come too.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # none of them where it is closed
+            stream.reconfigure(errors="backslashreplace")
+    status, words = _outcome(body)
+    if words:
+        _print_last(f"{name}: {one_line(words)}")
+    sys.exit(status)
+
+
+def print_version(wanted: bool) -> None:
+    """Print the version of the project, and leave; the callback of an option `--version`."""
+    if wanted:
+        from tracker import __version__
+
+        print(f"raised-hand-tracker {__version__}")
+        sys.exit(0)
+
+
+def one_line(text: str) -> str:
+    """A text for a terminal: control characters written out, words that do not end cut."""
+    shown = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
+    return re.sub(r"(\S{200})\S{100,}", r"\1...", shown)
+
+
+def _outcome(body: Callable[[], None]) -> tuple[int, str]:
+    try:
+        _check_words()
+        body()
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except (ConfigError, SceneError) as error:
+        return 2, str(error)
+    except TrackerError as error:
+        return 1, str(error)
+    except KeyboardInterrupt:
+        return _interrupted()
+    except SystemExit as leaving:
+        if leaving.code == INTERRUPTED:  # what typer makes of Ctrl-C
+            return _interrupted()
+        return leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None), ""
+    except MemoryError:
+        return 1, "there is not enough memory; give the process more, or less to do."
+    except BrokenPipeError:  # `| head` has seen enough
+        return 1, ""
+    except OSError as error:
+        place = error.filename if error.filename is not None else "standard output or a file"
+        status = 2 if error.errno == errno.ENAMETOOLONG else 1
+        return status, f"{place}: {error.strerror or error}."
+    return 0, ""
+
+
+def _check_words() -> None:
+    """Refuse names that no table, page or database can hold, before the work.
+
+    Raises:
+        ConfigError: An argument is no UTF-8 text.
+    """
+    for word in sys.argv[1:]:
+        if not word.isascii() and any("\ud800" <= letter <= "\udfff" for letter in word):
+            raise ConfigError(f"{word}: is no UTF-8 text; give the file another name.")
+
+
+def _interrupted() -> tuple[int, str]:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C comes to the same
+    return INTERRUPTED, "stopped; what was written until now can be read."
+
+
+def _print_last(text: str) -> None:
+    """Say the last word, and leave nothing behind that fails as the interpreter ends."""
+    for stream, words in ((sys.stdout, ""), (sys.stderr, f"{text}\n")):
+        if stream is None:
+            continue
+        try:
+            stream.write(words)
+            stream.flush()
+        except (OSError, ValueError):  # full, or closed
+            if isinstance(stream, io.TextIOWrapper) and not stream.closed:
+                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
