@@ -305,6 +305,11 @@ class Config(BaseModel):
         0.25, "A scan farther than this from the image's stamp is too old for it.",
         unit="s", group="ranging", live=True, gt=0.0, le=10.0,
     )  # fmt: skip
+    leg_width_min_m: float = _parameter(
+        0.02, "Person-sized: no segment of the scan thinner than this is a leg. Legs in trousers "
+        "are .1 m wide and more; .075 leaves out most legs of chairs and tables, and bare ankles.",
+        unit="m", group="ranging", live=True, ge=0.0, le=0.3,
+    )  # fmt: skip
     body_width_m: float = _parameter(
         0.8, "Person-sized: no segment of the scan wider than this is a person.",
         unit="m", group="ranging", live=True, gt=0.1, le=2.0,

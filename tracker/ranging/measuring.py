@@ -101,6 +101,7 @@ def scan_people(scan: LocatedScan | None, config: Config) -> PersonClusters:
     return find_people(
         scan,
         segment_jump_m=config.segment_jump_m,
+        leg_width_min_m=config.leg_width_min_m,
         body_width_m=config.body_width_m,
         range_max_m=config.person_range_max_m,
     )

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from tracker.ranging import Background, find_people
+from tracker import Config
+from tracker.ranging import Background, scan_people
 
 PERIOD_NS = 100_000_000
 AFTER_S = 2.0
@@ -15,8 +16,7 @@ def watch(cast):
     def show(background, circles, scans, start=0):
         for number in range(start, start + scans):
             scan = cast(circles, stamp_ns=number * PERIOD_NS)
-            people = find_people(scan, segment_jump_m=0.15, body_width_m=0.8, range_max_m=8.0)
-            background.observe(scan, people.xy_m, AFTER_S)
+            background.observe(scan, scan_people(scan, Config()).xy_m, AFTER_S)
         return start + scans
 
     return show

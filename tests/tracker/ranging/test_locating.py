@@ -10,7 +10,7 @@ from tracker.ranging import beam_index, find_people, locate_scan, median_range
 
 BEAMS = 720
 STEP_RAD = 2 * np.pi / BEAMS
-LIMITS = {"segment_jump_m": 0.15, "body_width_m": 0.8, "range_max_m": 8.0}
+LIMITS = {"segment_jump_m": 0.15, "leg_width_min_m": 0.02, "body_width_m": 0.8, "range_max_m": 8.0}
 MOUNTINGS = {
     "upright": (0, 0, 40),
     "roll of 180": (180, 0, 0),

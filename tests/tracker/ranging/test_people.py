@@ -5,7 +5,7 @@ from tracker import Scan
 from tracker.geometry import RigidTransform
 from tracker.ranging import find_people, locate_scan
 
-LIMITS = {"segment_jump_m": 0.15, "body_width_m": 0.8, "range_max_m": 8.0}
+LIMITS = {"segment_jump_m": 0.15, "leg_width_min_m": 0.02, "body_width_m": 0.8, "range_max_m": 8.0}
 
 
 def test_two_legs_are_one_person_between_them(cast, legs):
@@ -25,8 +25,47 @@ def test_the_wall_is_nobody(cast):
     assert len(find_people(cast([]), **LIMITS)) == 0
 
 
-def test_a_table_leg_is_nobody(cast):
-    assert len(find_people(cast([(1.0, 0.3, 0.02)]), **LIMITS)) == 0
+@pytest.mark.parametrize("radius_m", [0.012, 0.02, 0.03], ids=str)
+def test_a_slim_leg_is_somebody_where_three_beams_meet_it(cast, radius_m):
+    (found,) = find_people(cast([(1.0, 0.3, radius_m)], beams=1440), **LIMITS).xy_m
+    assert found == pytest.approx([1.0, 0.3], abs=0.07)
+    assert len(find_people(cast([(4.0, 0.3, 0.03)], beams=360), **LIMITS)) == 0  # one beam
+
+
+def test_what_is_thinner_than_a_leg_is_nobody(cast):
+    assert len(find_people(cast([(1.0, 0.3, 0.004)], beams=7200), **LIMITS)) == 0
+    limits = {**LIMITS, "leg_width_min_m": 0.075}
+    assert len(find_people(cast([(1.0, 0.3, 0.02)]), **limits)) == 0
+
+
+@pytest.mark.parametrize("width_m", [0.3, 0.6], ids=str)
+def test_a_board_beside_something_else_is_nobody(cast, width_m):
+    """A board at x = 2 whose right edge is hidden by a post, as behind a chair."""
+    post = cast([(1.5, 0.15, 0.05)])
+    beams = np.arange(720) * np.pi / 360
+    board = 2.0 / np.where(np.cos(beams) > 0.1, np.cos(beams), 0.1)
+    left = board * np.sin(beams)
+    is_board = (np.cos(beams) > 0.1) & (left > 0.2) & (left < 0.2 + width_m)
+    ranges = np.where(is_board, np.minimum(post.range_m, board), post.range_m)
+    scan = locate_scan(Scan(0, "laser", 0.0, np.pi / 360, 0.05, 12.0, ranges), RigidTransform())
+    people = find_people(scan, **LIMITS)
+    assert people.xy_m == pytest.approx(np.array([[1.5, 0.15]]), abs=0.06)
+
+
+def test_somebody_flat_who_stands_free_is_somebody():
+    beams = np.arange(720) * np.pi / 360 - np.pi
+    ranges = np.where(np.abs(beams) < 0.12, 2.0, 6.0)
+    scan = locate_scan(Scan(0, "laser", -np.pi, np.pi / 360, 0.05, 12.0, ranges), RigidTransform())
+    assert len(find_people(scan, **LIMITS)) == 1
+
+
+def test_of_a_thousand_things_the_nearest_five_hundred_are_looked_at(cast):
+    angles = np.arange(1000) * 2 * np.pi / 1000 + 0.003
+    posts = [(3.0 * np.cos(a), 3.0 * np.sin(a), 0.005) for a in angles[10:]]
+    scan = cast([(0.8, 0.0, 0.06), *posts], beams=14400)
+    people = find_people(scan, **{**LIMITS, "leg_width_min_m": 0.0})
+    assert 200 < len(people) <= 501
+    assert np.min(np.linalg.norm(people.xy_m - [0.8, 0.0], axis=1)) < 0.05
 
 
 def test_two_people_side_by_side_stay_two(cast, legs):
