@@ -17,6 +17,9 @@ class NoteKind(Enum):
     SCAN_WITHOUT_BEAMS = "scan without beams"
     SCAN_WITHOUT_RETURNS = "scan without returns"
     SCAN_NOT_LOCATED = "scan not located"
+    SCAN_IN_MILLIMETERS = "scan in millimeters"
+    SCAN_IN_DEGREES = "scan in degrees"
+    SCAN_THINNED = "scan thinned"
     LASER_MOUNTING_UNKNOWN = "laser mounting unknown"
     CAMERA_INFO_REFUSED = "CameraInfo refused"
     INTRINSICS_SCALED = "intrinsics scaled"
@@ -45,6 +48,9 @@ _FAULTS = frozenset(
 )
 _REMARKS = frozenset(
     {
+        NoteKind.SCAN_IN_MILLIMETERS,
+        NoteKind.SCAN_IN_DEGREES,
+        NoteKind.SCAN_THINNED,
         NoteKind.LASER_MOUNTING_UNKNOWN,
         NoteKind.INTRINSICS_SCALED,
         NoteKind.PRINCIPAL_POINT_OFF,

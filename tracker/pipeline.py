@@ -30,6 +30,7 @@ from tracker.ranging import (
     expected_hands,
     locate_scan,
     measure_people,
+    mend_scan,
     scan_people,
 )
 from tracker.tracking import PersonTracker, View, approach_pose, customer_pose
@@ -85,6 +86,7 @@ class Pipeline:
         self._located_ns, self._is_supposed = 0, False
         self._turn = Turn()
         self._notes: list[Note] = []
+        self._scan_notes: tuple[Note, ...] = ()
 
     @property
     def transforms(self) -> Transforms:
@@ -126,6 +128,7 @@ class Pipeline:
 
     def add_scan(self, scan: Scan) -> None:
         """Take in one scan."""
+        scan, self._scan_notes = mend_scan(scan)
         self.room.add_scan(scan)
 
     def set_camera(self, camera: CameraModel) -> None:
@@ -177,7 +180,7 @@ class Pipeline:
             What came of it. Missing transforms and scans are no errors: they are noted, hands are
             still reported, and no pose is given that is not known.
         """
-        self._notes = []
+        self._notes = list(self._scan_notes)
         self._follow_clock(image.stamp_ns)
 
         self.camera, camera_notes = self._cameras.of(image.width, image.height)
@@ -270,6 +273,7 @@ class Pipeline:
         self.detector.reset()
         self._camera_pose, self._is_supposed = None, False
         self._sustained_ns = -1
+        self._scan_notes = ()
 
     def _note(self, kind: NoteKind, text: str) -> None:
         self._notes.append(Note(kind, text))

@@ -6,6 +6,7 @@ from tracker.ranging.bearing_span import bearing_span_rad
 from tracker.ranging.expected_hands import expected_hands
 from tracker.ranging.locating import locate_scan
 from tracker.ranging.measuring import measure_people, scan_people
+from tracker.ranging.odd_scans import mend_scan
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.rays import body_pose, hand_rays
 
@@ -21,5 +22,6 @@ __all__ = [
     "locate_scan",
     "measure_people",
     "median_range",
+    "mend_scan",
     "scan_people",
 ]
