@@ -23,6 +23,7 @@ from tracker.containers import (
     PerceptionWork,
 )
 from tracker.perception.clearing import PictureClearer
+from tracker.perception.gray import tint_gray
 from tracker.perception.landmarks import Landmarks
 from tracker.perception.movement import Movement
 from tracker.perception.palm_search import Palms, Window
@@ -135,7 +136,8 @@ class HandFollower:
         places = max(1, places - len(guesses) - spared)
         began_s = time.perf_counter()
         bgr = self.seen = self._clearer.clear(image.bgr)
-        searches = self._searches(bgr, regions, expected_px, config, places if room else 0)
+        places = places if room else 0
+        searches = self._searches(tint_gray(bgr), regions, expected_px, config, places)
         read = Regions.concatenate(regions, guesses)
         hands, palms = self._reader.read_beside(bgr, read, searches)
         rows = np.concatenate([rows, np.full(len(guesses), -1)])

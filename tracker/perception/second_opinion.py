@@ -23,6 +23,7 @@ from tracker.perception.arm_watch import LOOK_PLACES, ArmWatch, hands_of_arms
 from tracker.perception.bodies import Bodies
 from tracker.perception.body_detector import BodyDetector
 from tracker.perception.detector import GuidedDetector, HandDetector, PiecewiseDetector
+from tracker.perception.gray import tint_gray
 from tracker.perception.head_memory import HeadMemory
 from tracker.perception.owner_finder import OwnerFinder
 from tracker.perception.pose_hands import draw_hands
@@ -95,8 +96,8 @@ class SecondOpinion:
         hands = self._hands.find(image)
         if self._config.raise_rule == "image" and self._config.pose_opinion == "veto":
             return hands  # the specification's rule stays what it is
-        if self.seen is not None:
-            image = replace(image, bgr=self.seen)
+        seen = image.bgr if self.seen is None else self.seen
+        image = replace(image, bgr=tint_gray(seen))
         if isinstance(self._bodies, OwnerFinder):
             self._bodies.expect(hands)
         bodies = self._bodies.find(image)

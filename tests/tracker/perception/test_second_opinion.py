@@ -199,7 +199,7 @@ class Told(Always):
     """A hand detector that can be told where to look, and how much."""
 
     work = PerceptionWork(places=2)
-    seen = np.full((480, 640, 3), 90, np.uint8)
+    seen = np.full((480, 640, 3), (90, 130, 160), np.uint8)
 
     def expect(self, boxes_px):
         self.expected_px = boxes_px
