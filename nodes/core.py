@@ -16,6 +16,7 @@ from nodes.fault_log import FaultLog
 from nodes.header_peek import peek_header
 from nodes.image_silence import patience_s
 from nodes.inbox import Inbox
+from nodes.link import Link
 from nodes.outputs import HasSubscribers, Publish, publish_answer, publish_nobody, publish_views
 from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
 from nodes.work_budget import WorkBudget
@@ -60,6 +61,7 @@ class NodeCore:
         transforms: By default a buffer of the project's own, filled by `receive`. A shell that
             passes another one (around tf2's) fills it itself and calls `heard_transforms`.
         topic_names: Where each input is listened to, for words; by default the unmapped names.
+        links: What the wire knows of who publishes the inputs; asked for every report.
         steady_ns: A clock that never jumps.
 
     Raises:
@@ -77,11 +79,12 @@ class NodeCore:
         detector: HandDetector | None = None,
         transforms: Transforms | None = None,
         topic_names: Mapping[Input, str] | None = None,
+        links: Callable[[], Mapping[Input, Link]] = dict,
         steady_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         self._publish, self._has_subscribers = publish, has_subscribers
         self._log, self._now_ns, self._steady_ns = log, now_ns, steady_ns
-        self._config = config
+        self._config, self._links = config, links
         self._pipeline = Pipeline(config, detector, transforms)
         self._inbox = Inbox()
         self._images = self._pipeline.room.images
@@ -192,6 +195,7 @@ class NodeCore:
             type(self._pipeline.detector).__name__,
             is_enabled=self._is_enabled,
             lost=self._images.lost,
+            links=self._links(),
         )
         if self._steady_ns() - self._began_ns >= _SETTLED_NS:
             for status in statuses:

@@ -18,6 +18,8 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from nodes.core import NodeCore
+from nodes.dds.endpoints import Subscription
+from nodes.dds.links import LinkWatch
 from nodes.dds.names import Names
 from nodes.dds.node import Node
 from nodes.dds.parameters import ParameterServer
@@ -84,6 +86,9 @@ class DdsHandDetector:
             for output, type_name in OUTPUT_TYPES.items()
         }
         inputs = {Input.IMAGES: IMAGE_TOPICS[config.image_transport], **INPUT_TOPICS}
+        links = LinkWatch(
+            self._node, {item: self._subscribe(item, topic) for item, topic in inputs.items()}
+        )
         self._core = NodeCore(
             config,
             publish=lambda output, message: self._publishers[output].publish(message.cdr),
@@ -93,9 +98,8 @@ class DdsHandDetector:
             topic_names={
                 item: self._node.names.resolve(topic.name) for item, topic in inputs.items()
             },
+            links=links.report,
         )
-        for item, topic in inputs.items():
-            self._subscribe(item, topic)
         if use_sim_time:
             self._node.subscribe("/clock", _CLOCK_TYPE, self._take_clock, CLOCK)
         self._serve()
@@ -127,11 +131,11 @@ class DdsHandDetector:
         self._node.close()
         return went_well
 
-    def _subscribe(self, item: Input, topic: InputTopic) -> None:
+    def _subscribe(self, item: Input, topic: InputTopic) -> Subscription:
         def take(cdr: bytes) -> None:
             self._core.receive(item, Encoded(topic.type_name, cdr))
 
-        self._node.subscribe(topic.name, topic.type_name, take, PROFILES[item])
+        return self._node.subscribe(topic.name, topic.type_name, take, PROFILES[item])
 
     def _serve(self) -> None:
         def release(_: Any) -> Any:

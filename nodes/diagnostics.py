@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from nodes.image_silence import patience_s
+from nodes.link import Link
 from nodes.topics import DIAGNOSTICS_TYPE, Input
 from tracker.clock_offset import ClockOffset
 from tracker.config import NODE_NAME, Config
@@ -96,6 +97,7 @@ class Diagnostics:
         self._processed = 0
         self._last_frame_ns: int | None = None
         self._located_ns: int | None = None
+        self._links: Mapping[Input, Link] = {}
         self.resets = 0
 
     def heard(self, item: Input) -> None:
@@ -148,7 +150,13 @@ class Diagnostics:
         return None if self._last_frame_ns is None else self._since(self._last_frame_ns)
 
     def report(
-        self, config: Config, detector: str, *, is_enabled: bool, lost: int
+        self,
+        config: Config,
+        detector: str,
+        *,
+        is_enabled: bool,
+        lost: int,
+        links: Mapping[Input, Link] | None = None,
     ) -> list[Status]:
         """Everything there is to say now; rates are since a few reports ago.
 
@@ -157,8 +165,10 @@ class Diagnostics:
             detector: What finds hands.
             is_enabled: Whether images are processed at all.
             lost: Images that gave way because the worker was behind.
+            links: What the wire knows of who publishes the inputs.
         """
         with self._lock:
+            self._links = links or {}
             counts = {item.value: seen.count for item, seen in self._inputs.items()}
             counts |= {"processed": self._processed, "lost": lost}
             counts |= {f"{i.value} malformed": seen.malformed for i, seen in self._inputs.items()}
@@ -183,6 +193,8 @@ class Diagnostics:
             "age_s": "never came" if seen.last_ns is None else f"{self._since(seen.last_ns):.1f}",
             "malformed": seen.malformed,
         }
+        if item in self._links:
+            values |= {"publishers": self._links[item].publishers, **self._links[item].values}
         if seen.last_fault:
             values["last_fault"] = seen.last_fault
         return Status(item.value, level, message, values, is_news=not is_fault)
@@ -203,10 +215,14 @@ class Diagnostics:
             if seen.last_ns is None and self._inputs[Input.STATIC_TRANSFORMS].count:
                 return self._judge_connection("coming")
         if seen.last_ns is None:
-            return level, f"missing: nothing has come on {self._topic_names[item]}"
+            return (
+                level,
+                f"missing: nothing has come on {self._topic_names[item]}{self._silence(item)}",
+            )
         age_s = self._since(seen.last_ns)
         if age_s >= SILENT_S:
-            return level, f"stale: nothing has come on {self._topic_names[item]} for {age_s:.1f} s"
+            where = f"{self._topic_names[item]} for {age_s:.1f} s{self._silence(item)}"
+            return level, f"stale: nothing has come on {where}"
         if item is Input.TRANSFORMS:
             return self._judge_connection("coming")
         unused = self._scan_use.frames
@@ -215,7 +231,12 @@ class Diagnostics:
         ahead_s = self._scan_clock.ahead_s()
         if item is Input.SCAN and _AHEAD_S < ahead_s < _OTHER_TIME_S:
             return WARN, f"stamps are {ahead_s:.3f} s ahead of the node's clock: other clocks?"
-        return OK, "coming"
+        link = self._links.get(item)
+        return (WARN, f"coming, but {link.loss}") if link and link.loss else (OK, "coming")
+
+    def _silence(self, item: Input) -> str:
+        """Why nothing comes, as far as the wire knows; follows the words that say so."""
+        return self._links[item].silence if item in self._links else ""
 
     def _judge_connection(self, otherwise: str) -> tuple[int, str]:
         """Transforms come, yet the last image had no pose."""

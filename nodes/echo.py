@@ -14,7 +14,8 @@ from nodes.qos import Profile
 from tracker.errors import ConfigError, RecordingError
 from tracker.messages.types import deserialize, typestore
 
-NODE_NAME = "raised_hand_echo"
+#: Hidden from ROS 2's tools, as `raised-hand play` is.
+NODE_NAME = "_raised_hand_echo"
 
 #: Longer arrays are cut, as `ros2 topic echo` does.
 _LONGEST = 128

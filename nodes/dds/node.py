@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -15,7 +16,6 @@ from cyclonedds.core import (
     InstanceState,
     Policy,
     Qos,
-    ReadCondition,
     SampleState,
     ViewState,
     WaitSet,
@@ -24,9 +24,10 @@ from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.internal import SampleInfo
 
 from nodes.dds.discovery import Offer, offers
+from nodes.dds.endpoints import Publisher, Subscription, TakeFrom
 from nodes.dds.environment import domain_settings
 from nodes.dds.names import Names, dds_type_name
-from nodes.dds.profiles import DEFAULT, GRAPH, SERVICES, endpoint_qos
+from nodes.dds.profiles import DEFAULT, GRAPH, SERVICES, endpoint_qos, reliability
 from nodes.dds.raw import RawReader, RawTopic, RawWriter
 from nodes.dds.services import (
     Answer,
@@ -35,6 +36,7 @@ from nodes.dds.services import (
     request_type,
     response_type,
 )
+from nodes.dds.sockets import enlarge_own_sockets
 from nodes.qos import Profile
 from tracker.closing import Closing
 from tracker.errors import ConfigError, RecordingError
@@ -53,32 +55,6 @@ _DOMAINS: dict[int, Domain] = {}
 Take = Callable[[bytes], None]
 
 
-class Publisher:
-    """Sends serialized messages to one topic. Made by `Node.publisher`.
-
-    Attributes:
-        topic: Its full name.
-        type_name: As `std_msgs/msg/Bool`.
-        lost: Messages that a slow reliable reader left no room for.
-    """
-
-    def __init__(self, topic: str, type_name: str, writer: RawWriter) -> None:
-        self.topic = topic
-        self.type_name = type_name
-        self.lost = 0
-        self._writer = writer
-
-    def publish(self, cdr: bytes) -> None:
-        """Send one message, serialized with its encapsulation; from any thread."""
-        if not self._writer.write_cdr(cdr):
-            self.lost += 1
-
-    @property
-    def subscribers(self) -> int:
-        """How many readers it has now."""
-        return int(self._writer.get_publication_matched_status().current_count)
-
-
 class Node(Closing):
     """A node that ROS 2's tools show as one of theirs; a context manager.
 
@@ -91,6 +67,7 @@ class Node(Closing):
 
     Attributes:
         names: Its names.
+        domain_id: The DDS domain it is in.
 
     Raises:
         ConfigError: A name or a variable is none, or Cyclone DDS cannot start.
@@ -108,11 +85,14 @@ class Node(Closing):
         self._complain = complain
         self.names = Names(name, namespace, remaps)
         settings = domain_settings(os.environ if environment is None else environment)
+        self.domain_id = settings.domain_id
         _domain(settings.domain_id, settings.config)
         self._participant = _participant(settings.domain_id)
+        if not settings.names_buffer:
+            enlarge_own_sockets()
         self._writers: list[RawWriter] = []
-        self._readers: list[RawReader] = []
-        self._inputs: list[tuple[RawReader, int, Callable[[bytes, SampleInfo], None]]] = []
+        self._inputs: list[Subscription] = []
+        self._orders = deque[Callable[[], None]]()
         self._waitset = WaitSet(self._participant)
         self._wake = GuardCondition(self._participant)
         self._waitset.attach(self._wake)
@@ -133,9 +113,11 @@ class Node(Closing):
         writer = self._write(f"rt{topic}", type_name, profile)
         self._writers.append(writer)
         self._announce()
-        return Publisher(topic, type_name, writer)
+        return Publisher(topic, type_name, profile, writer)
 
-    def subscribe(self, name: str, type_name: str, take: Take, profile: Profile = DEFAULT) -> None:
+    def subscribe(
+        self, name: str, type_name: str, take: Take, profile: Profile = DEFAULT
+    ) -> Subscription:
         """Listen to a topic.
 
         Args:
@@ -145,7 +127,15 @@ class Node(Closing):
             profile: Its quality of service.
         """
         reader = self._read(f"rt{self.names.resolve(name)}", type_name, profile)
-        self._listen(reader, profile.depth, lambda cdr, _: take(cdr))
+        return self._listen(reader, profile, lambda cdr, _: take(cdr))
+
+    def listen_anew(self, subscription: Subscription, *, reliable: bool) -> None:
+        """Ask that what is lost is sent again, or no more; only who offers it is heard then.
+
+        The thread that spins does it. What comes in that moment may be lost.
+        """
+        self._orders.append(lambda: self._exchange(subscription, reliable))
+        self._wake.set(True)
 
     def offers(self, name: str, timeout_s: float) -> list[Offer]:
         """Who publishes a topic; waits for the first one until `timeout_s`."""
@@ -174,7 +164,7 @@ class Node(Closing):
             except RecordingError as error:
                 self._complain(f"{full}: {error}")
 
-        self._listen(reader, profile.depth, take)
+        self._listen(reader, profile, take)
 
     def spin_once(self, timeout_s: float | None = None) -> None:
         """Wait for messages and requests, and hand them over.
@@ -184,9 +174,13 @@ class Node(Closing):
         """
         endless = 2**62
         self._waitset.wait(endless if timeout_s is None else max(round(timeout_s * 1e9), 0))
-        for reader, depth, take in self._inputs:
-            for cdr, info in reader.take_cdr(depth):
-                take(cdr, info)
+        if self._orders:
+            self._wake.set(False)
+            while self._orders:
+                self._orders.popleft()()
+        for item in self._inputs:
+            for cdr, info in item.reader.take_cdr(item.profile.depth):
+                item.take(cdr, info)
 
     def spin(self) -> None:
         """Hand over messages and requests until `stop`."""
@@ -204,13 +198,20 @@ class Node(Closing):
         # Deletes what is inside too, whoever still names it.
         self._participant.__del__()
 
-    def _listen(
-        self, reader: RawReader, depth: int, take: Callable[[bytes, SampleInfo], None]
-    ) -> None:
-        condition = ReadCondition(reader, _UNREAD)
-        self._waitset.attach(condition)
-        self._readers.append(reader)
-        self._inputs.append((reader, depth, take))
+    def _listen(self, reader: RawReader, profile: Profile, take: TakeFrom) -> Subscription:
+        made = Subscription(profile, take, reader, _UNREAD)
+        self._waitset.attach(made.arrived)
+        self._inputs.append(made)
+        self._announce()
+        return made
+
+    def _exchange(self, subscription: Subscription, reliable: bool) -> None:
+        before = subscription.reader
+        profile = subscription.profile._replace(reliable=reliable)
+        qos = Qos(reliability(profile), base=before.get_qos())
+        self._waitset.detach(subscription.arrived)
+        subscription.exchange(RawReader(self._participant, before.topic, qos), profile)
+        self._waitset.attach(subscription.arrived)
         self._announce()
 
     def _write(
@@ -232,7 +233,7 @@ class Node(Closing):
             "rmw_dds_common/msg/NodeEntitiesInfo",
             node_namespace=self.names.namespace,
             node_name=self.names.node_name,
-            reader_gid_seq=[_gid(reader) for reader in self._readers],
+            reader_gid_seq=[_gid(item.reader) for item in self._inputs],
             writer_gid_seq=[_gid(writer) for writer in self._writers],
         )
         said = build(_GRAPH_TYPE, gid=_gid(self._participant), node_entities_info_seq=[node])

@@ -31,9 +31,7 @@ def endpoint_qos(profile: Profile, user_data: str) -> Qos:
     history = Policy.History.KeepLast(profile.depth)
     policies = [
         history,
-        Policy.Reliability.Reliable(_MAX_BLOCKING_NS)
-        if profile.reliable
-        else Policy.Reliability.BestEffort,
+        reliability(profile),
         Policy.WriterDataLifecycle(autodispose=False),
         Policy.DataRepresentation(use_cdrv0_representation=True),  # ROS 2 knows no other
         Policy.Userdata(user_data.encode()),
@@ -44,3 +42,10 @@ def endpoint_qos(profile: Profile, user_data: str) -> Qos:
             Policy.DurabilityService(0, history, _UNLIMITED, _UNLIMITED, _UNLIMITED),
         ]
     return Qos(*policies)
+
+
+def reliability(profile: Profile) -> Policy.Reliability:
+    """Whether what is lost is sent again, as a policy of its own."""
+    if profile.reliable:
+        return Policy.Reliability.Reliable(_MAX_BLOCKING_NS)
+    return Policy.Reliability.BestEffort

@@ -47,7 +47,7 @@ def play_command(
             delay_s=delay,
             progress=progress,
         )
-    for sentence in played.skipped:
+    for sentence in played.skipped + played.doubts:
         complain(sentence)
     for name, count in played.counts.items():
         console.print(f"{name}: {count}", highlight=False, soft_wrap=True)

@@ -200,7 +200,7 @@ def ask(make_node, ear, until):
         identity = f"clientid={next(numbers)};"
         writer = client._write(f"rq{name}Request", kinds[0], CLIENT, identity)
         reader = client._read(f"rr{name}Reply", kinds[1], CLIENT, identity)
-        client._listen(reader, 10, lambda cdr, _: replies.append(cdr))
+        client._listen(reader, CLIENT, lambda cdr, _: replies.append(cdr))
         until(lambda: writer.get_publication_matched_status().current_count)
         until(lambda: reader.get_subscription_matched_status().current_count)
         body = serialize(build(kinds[0], **request)).cdr

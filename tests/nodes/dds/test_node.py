@@ -92,7 +92,7 @@ def test_the_graph_names_the_node_and_each_of_its_endpoints(make_node, until):
     heard = []
     watcher = make_node("watcher")
     reader = watcher._read("ros_discovery_info", GRAPH_TYPE, GRAPH)
-    watcher._listen(reader, 10, lambda cdr, _: heard.append(deserialize(GRAPH_TYPE, cdr)))
+    watcher._listen(reader, GRAPH, lambda cdr, _: heard.append(deserialize(GRAPH_TYPE, cdr)))
     node.publisher("hand_raised", BOOL)
     node.subscribe("/image_raw", IMAGE, lambda cdr: None)
 

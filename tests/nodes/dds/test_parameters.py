@@ -45,7 +45,7 @@ def ask(make_node, holder, until):
             identity = f"clientid={service};"
             writer = client._write(f"rq{full}Request", kinds[0], PARAMETER_SERVICES, identity)
             reader = client._read(f"rr{full}Reply", kinds[1], PARAMETER_SERVICES, identity)
-            client._listen(reader, 10, lambda cdr, _: replies.append(cdr))
+            client._listen(reader, PARAMETER_SERVICES, lambda cdr, _: replies.append(cdr))
             ends[service] = writer, replies, kinds
         writer, replies, (request_type, response_type) = ends[service]
         until(lambda: writer.get_publication_matched_status().current_count)

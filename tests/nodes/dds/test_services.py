@@ -25,7 +25,7 @@ def ask(make_node, until):
         replies = []
         identity = "clientid=0.1;"
         reader = client._read(f"rr{name}Reply", f"{service}_Response", _services(), identity)
-        client._listen(reader, 10, lambda cdr, _: replies.append(cdr))
+        client._listen(reader, _services(), lambda cdr, _: replies.append(cdr))
         writer = client._write(f"rq{name}Request", f"{service}_Request", _services(), identity)
 
         def send(cdr):
