@@ -1,3 +1,4 @@
+from nodes.link import Link
 from nodes.topics import Input, Output
 from tracker import Config
 
@@ -99,3 +100,19 @@ def test_the_report_bears_the_nodes_time(wire):
     wire.core.diagnose()
     stamp = wire.messages(Output.DIAGNOSTICS)[-1].header.stamp
     assert stamp.sec == START_NS // 10**9
+
+
+def test_what_the_wire_knows_follows_what_is_missing_and_what_is_lost(make_wire):
+    links = {Input.IMAGES: Link(1, loss="the socket is full", values={"dropped": 7})}
+    wire = make_wire(Config(fixed_frame="base_link"), links=lambda: links)
+    found = wire.diagnose()["images"]
+    assert found.message == (
+        "missing: nothing has come on image_raw; 1 publisher connected, but the socket is full"
+    )
+    assert (found.values["publishers"], found.values["dropped"]) == ("1", "7")
+    wire.mounting()
+    wire.settle()
+    wire.image(START_NS)
+    wire.settle()
+    found = wire.diagnose()["images"]
+    assert (found.level, found.message) == (WARN, "coming, but the socket is full")

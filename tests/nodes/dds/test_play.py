@@ -1,3 +1,4 @@
+import itertools
 import threading
 import time
 
@@ -6,7 +7,10 @@ import pytest
 
 pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
 
+from nodes import arrival
+from nodes.echo import NODE_NAME as ECHOER
 from nodes.echo import echo
+from nodes.play import NODE_NAME as PLAYER
 from nodes.play import play
 from nodes.qos import PROFILES
 from nodes.topics import Input
@@ -125,6 +129,50 @@ def test_quality_of_service_is_as_recorded_or_as_drivers_have_it(recording, make
         "/tf_static": (True, True), "/image_raw": (True, False), "/hand_raised": (True, True)
     }  # fmt: skip
     assert offered(best_effort=True) == {**recorded, "/image_raw": (False, False)}
+
+
+def test_a_recording_that_arrives_leaves_no_doubts_but_of_topics_nobody_wanted(
+    recording, listener
+):
+    hear(listener, "/image_raw", IMAGE, Input.IMAGES)
+    hear(listener, "/tf_static", TF_MESSAGE, Input.STATIC_TRANSFORMS)
+    doubts = play(recording, rate=10.0).doubts
+    assert doubts == ["Nobody listened to /hand_raised."]
+
+
+def test_nobody_at_all_is_told_with_what_to_check(recording, domain):
+    (doubt,) = play(recording, rate=100.0, delay_s=0.1).doubts
+    assert "Nobody listened; check ROS_DOMAIN_ID" in doubt
+
+
+def test_a_subscriber_that_asks_for_more_than_is_offered_is_told(recording, listener):
+    hear(listener, "/image_raw", IMAGE, Input.STATIC_TRANSFORMS)
+    doubts = play(recording, rate=10.0, topics=["/image_raw"]).doubts
+    assert "/image_raw: 1 subscribers ask for more durability than is offered" in doubts[-1]
+
+
+def test_datagrams_that_listeners_drop_are_told_with_the_remedy(recording, listener, monkeypatch):
+    counts = itertools.count(40, 17)
+    monkeypatch.setattr(arrival, "dropped_in_domain", lambda domain_id: next(counts))
+    hear(listener, "/image_raw", IMAGE, Input.IMAGES)
+    (doubt,) = play(recording, rate=10.0, topics=["/image_raw"]).doubts
+    assert doubt.startswith("17 datagrams found no room")
+    assert "net.core.rmem_max" in doubt
+
+
+def test_what_goes_out_late_is_told(recording, listener):
+    hear(listener, "/image_raw", IMAGE, Input.IMAGES)
+
+    def stall(share, count):
+        time.sleep(0.6 if count == 3 else 0.0)
+
+    doubts = play(recording, topics=["/image_raw"], progress=stall).doubts
+    assert any("Slower than real time" in doubt for doubt in doubts)
+
+
+@pytest.mark.parametrize("name", [PLAYER, ECHOER])
+def test_players_and_listeners_are_hidden_from_ros_2s_lists_as_its_own_helpers_are(name):
+    assert name.startswith("_")
 
 
 def test_what_is_no_ros_2_recording_is_said_anew(tmp_path, listener):
