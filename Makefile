@@ -30,7 +30,7 @@ demo: $(VENV)/.installed  ## simulate a restaurant, replay it, print who raised 
 
 test: $(VENV)/.installed-$(TESTED)  ## run the tests
 	@# Compiled once beforehand, for all the processes that follow.
-	$(BIN)/python -c 'import tracker; tracker.PersonTracker()'
+	$(BIN)/python -c 'from tracker.tracking.ready import compile_tracker; compile_tracker(print)'
 	$(PYTEST) -n auto --maxprocesses 2 -m "not slow" $(if $(NUMPY),--ignore=tests/notebooks)
 ifeq ($(NUMPY),)
 	$(PYTEST) $(REAL_TIME) || $(PYTEST) $(REAL_TIME) --last-failed
@@ -61,12 +61,12 @@ setup: $(VENV)/.installed $(VENV)/.installed-$(TESTED) $(VENV)/.installed-lint  
 
 # One stamp file per set of dependencies, so that a repeated call is quick.
 $(VENV)/.installed: pyproject.toml setup.py | $(VENV)/.created
-	@echo "Installing into $(VENV) ..."
+	@echo "Installing into $(VENV), which takes a minute or two ..."
 	@$(INSTALL) --editable .
 	@touch $@
 
 $(VENV)/.installed-%: pyproject.toml setup.py | $(VENV)/.created
-	@echo "Installing into $(VENV), with what $* needs ..."
+	@echo "Installing into $(VENV), with what $* needs; this takes a minute or two ..."
 	@$(INSTALL) --editable ".[$*]"
 	@touch $@
 

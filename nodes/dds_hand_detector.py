@@ -225,11 +225,13 @@ def command(
     """
     from rich.console import Console
 
-    from tracker.cli.progress import fetch_models_if_needed
+    from tracker.cli.progress import compile_tracker_first, fetch_models_if_needed
 
     name = Names(NODE_NAME, namespace, remap or ()).full_node_name
     config, sim_time = _parameters(params_file or [], param or [], name)
-    fetch_models_if_needed(Console(stderr=True))
+    errors = Console(stderr=True)
+    fetch_models_if_needed(errors)
+    compile_tracker_first(errors)
     with _stop_signals() as stop:
         node = DdsHandDetector(
             config, namespace=namespace, remaps=remap or (), use_sim_time=use_sim_time or sim_time

@@ -16,6 +16,7 @@ from nodes.ros_wiring import RosWiring, declare_parameters
 from tracker.config import NODE_NAME
 from tracker.errors import ConfigError, TrackerError
 from tracker.program import print_version
+from tracker.tracking.ready import compile_tracker
 
 
 class HandDetector(Node):
@@ -28,6 +29,7 @@ class HandDetector(Node):
 
     def __init__(self) -> None:
         super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True)
+        compile_tracker(self.get_logger().info)
         self._wiring = RosWiring(self, declare_parameters(self))
         self._wiring.listen()
 

@@ -19,7 +19,7 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar, fetch_models_if_needed
+from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.cli.simulate import simulate
 from tracker.errors import RecordingError
 from tracker.outputs import check_inputs_stay
@@ -54,6 +54,7 @@ def demo_command(
         [given, *parameter_files(config, parameters)], [recording, *replay_files(out)]
     )
     fetch_models_if_needed(errors)
+    compile_tracker_first(errors)
     simulate(scene, recording, seed, _DEMO_JPEG_QUALITY, force=True)
     with bar(errors, "Replaying") as progress:
         result = replay(recording, out, parameters, progress=progress)

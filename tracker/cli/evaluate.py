@@ -19,7 +19,7 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar, fetch_models_if_needed
+from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.config import Config
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
@@ -136,6 +136,7 @@ def _evaluate_scenes(
     from tracker.report.detection_table import false_table, recall_table, write_detection
 
     fetch_models_if_needed(errors)
+    compile_tracker_first(errors)
     with processes(jobs, episodes + minutes) as executor, bar(errors, "Evaluating") as progress:
         study = study_detection(
             episodes,

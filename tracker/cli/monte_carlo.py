@@ -24,7 +24,7 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import counting_bar
+from tracker.cli.progress import compile_tracker_first, counting_bar
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
 
@@ -75,7 +75,12 @@ def monte_carlo_command(
     scenario's own settings hold unless --config or -p says otherwise.
     """
     from tracker.evaluation.monte_carlo import find_scenario, monte_carlo, worthwhile_workers
-    from tracker.evaluation.scenario import SCENARIOS, PeopleScenario, default_config
+    from tracker.evaluation.scenario import (
+        SCENARIOS,
+        PeopleScenario,
+        ScanScenario,
+        default_config,
+    )
     from tracker.evaluation.study import study_as_dict
     from tracker.evaluation.study_log import LOG_FILES
     from tracker.report.study_page import study_page
@@ -96,6 +101,8 @@ def monte_carlo_command(
     if format is TableFormat.PARQUET:
         _check_parquet(out)
     settings = parameters_from(config, param, default_config(chosen))
+    if isinstance(chosen, (PeopleScenario, ScanScenario)):
+        compile_tracker_first(errors)
     useful = worthwhile_workers(chosen, trials)
     try:
         with (

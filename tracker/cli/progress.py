@@ -159,3 +159,14 @@ def fetch_models_if_needed(console: Console) -> None:
     )
     with fetch_progress(console) as progress:
         ensure_models(store, progress)
+
+
+def compile_tracker_first(console: Console) -> None:
+    """Compile the tracker before the work, and say so where that takes a minute."""
+    from tracker.tracking.ready import compile_tracker
+
+    def say(text: str) -> None:
+        console.print(text, highlight=False, markup=False, soft_wrap=True)
+
+    with console.status("Loading the tracker"):
+        compile_tracker(say)

@@ -24,7 +24,7 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar, fetch_models_if_needed
+from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
 
@@ -79,6 +79,7 @@ def replay_command(
         [source, *parameter_files(config, parameters)], [*replay_files(out), report, save_view]
     )
     fetch_models_if_needed(errors)
+    compile_tracker_first(errors)
     watched = ReplayReport(parameters) if report is not None else None
     watchers: list[Watcher] = [watched.watch] if watched is not None else []
     topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)

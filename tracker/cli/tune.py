@@ -22,7 +22,7 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar, fetch_models_if_needed, trials_bar
+from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed, trials_bar
 from tracker.config import Config
 from tracker.errors import ConfigError, RecordingError
 from tracker.outputs import check_inputs_stay
@@ -140,6 +140,7 @@ def tune_command(
     read = [None if is_scenario else Path(source), *parameter_files(config, base)]
     check_inputs_stay(read, [*files, report])
     _make_room(out)
+    compile_tracker_first(errors)
     if is_scenario:
         objective = scenario_objective(
             source, seed=seed, parts=scenes, scene_s=scene_s, unseen=unseen

@@ -8,18 +8,16 @@ machine code is kept on disk, so that only the first run on a machine waits for 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from tracker.containers import BoolArray, FloatArray
 from tracker.tracking.compiled.association import assign
+from tracker.tracking.compiled.kept import kept
 from tracker.tracking.compiled.loop import step
 from tracker.tracking.compiled.prediction import wrapped
-from tracker.tracking.compiled.sources import named_after_sources
 from tracker.tracking.sensor_model import RANGE_FLOOR_M
 
 
-@njit(cache=True, error_model="numpy")
-@named_after_sources
+@kept()
 def track_frame(
     mean: FloatArray,
     covariance: FloatArray,

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
-import platformdirs
-
 from tracker.errors import ModelFileError
 from tracker.perception.models.catalog import CONVERTER_VERSION, MODELS, find_model
 from tracker.perception.models.onnx_metadata import read_metadata
+from tracker.user_cache import user_cache
 
 DIRECTORY_VARIABLE = "RAISED_HAND_MODELS"
 FETCH_COMMAND = "raised-hand models fetch"
@@ -56,10 +55,18 @@ class ModelStore:
         Args:
             directory: The folder itself. None takes the environment variable RAISED_HAND_MODELS,
                 or the user's cache folder where that is unset or empty.
+
+        Raises:
+            ModelFileError: None of them says where.
         """
         chosen = directory or os.environ.get(DIRECTORY_VARIABLE)
         if not chosen:
-            cache = platformdirs.user_cache_path("raised-hand-tracker", appauthor=False)
+            cache = user_cache()
+            if cache is None:
+                raise ModelFileError(
+                    "There is no home folder to keep the model files in; set "
+                    f"{DIRECTORY_VARIABLE} to a folder that has them, or may have them."
+                )
             chosen = cache / "models"
         self.directory = Path(chosen).expanduser()
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import types
 
 from tracker.containers import BoolArray, FloatArray, IntArray
 from tracker.tracking.admission import BEARING_VARIANCE_MAX
 from tracker.tracking.compiled.admission import admit
 from tracker.tracking.compiled.association import assign_pairs, marginals
 from tracker.tracking.compiled.correction import update_assigned, update_jointly
+from tracker.tracking.compiled.kept import kept
 from tracker.tracking.compiled.life_cycle import (
     believe,
     count_detections,
@@ -23,7 +24,6 @@ from tracker.tracking.compiled.pairing import find_pairs
 from tracker.tracking.compiled.prediction import merge_modes, predict, visibility
 from tracker.tracking.compiled.renewal import renew
 from tracker.tracking.compiled.settings import Settings, named
-from tracker.tracking.compiled.sources import named_after_sources
 from tracker.tracking.compiled.state import State, selected
 from tracker.tracking.observation import DETECTION_MIN, RAISES_AGAIN
 from tracker.tracking.people import EXISTENCE, HAND, ID, MISSED, MISSING_S, RAISED
@@ -106,8 +106,7 @@ _SIGNATURE = types.Tuple((*_STATE, _given(_NUMBER, 2), _given(_NUMBER, 3), _WHOL
 )
 
 
-@njit(_SIGNATURE, cache=True, error_model="numpy")
-@named_after_sources
+@kept(_SIGNATURE)
 def track_frame(
     weight: FloatArray,
     mean: FloatArray,
