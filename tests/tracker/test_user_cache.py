@@ -12,5 +12,5 @@ def test_a_user_without_a_home_has_no_cache(monkeypatch):
     monkeypatch.delenv("RAISED_HAND_MODELS", raising=False)
     monkeypatch.setattr(platformdirs, "user_cache_path", lambda *_, **__: Path("~/.cache/x"))
     assert user_cache() is None
-    with pytest.raises(ModelFileError, match="no home folder .*set RAISED_HAND_MODELS"):
+    with pytest.raises(ModelFileError, match=r"no home folder .*set RAISED_HAND_MODELS"):
         ModelStore()

@@ -147,13 +147,15 @@ def fetch_models_if_needed(console: Console) -> None:
     Raises:
         ModelFileError: They cannot be fetched.
     """
-    from tracker.perception.models import ModelStore, ensure_models
+    from tracker.perception.models import ModelState, ModelStore, ensure_models
 
     store = ModelStore()
     if store.has_all():
         return
+    found = {row.state for row in store.status()} - {ModelState.PRESENT}
+    states = " or ".join(sorted(state.value for state in found))
     console.print(
-        f"The hand models are not here yet; fetching them once, to {store.directory}",
+        f"The hand models are {states}; fetching them once, to {store.directory}",
         highlight=False,
         soft_wrap=True,
     )

@@ -1,4 +1,4 @@
-"""Which texts are stored in an ONNX file?
+"""Which texts are stored in an ONNX file, and is it still what was written?
 
 Read by hand rather than with `onnx`: importing that takes longer than everything else a robot
 does with its model files at start-up, and this touches only the file's first and last pages.
@@ -9,12 +9,17 @@ Source: onnx.proto (ModelProto, StringStringEntryProto) and the Protocol Buffers
 
 import mmap
 from collections.abc import Iterator
+from hashlib import blake2b
 from pathlib import Path
 
 # Field numbers in onnx.proto.
 _MODEL_METADATA = 14
 _ENTRY_KEY = 1
 _ENTRY_VALUE = 2
+
+#: The last entry of a sealed file; its value is the hash of all before it.
+_SEAL_KEY = b"content_blake2b"
+_HASH_LENGTH = 64
 
 _Buffer = bytes | mmap.mmap
 
@@ -42,6 +47,36 @@ def read_metadata(path: Path) -> dict[str, str]:
         except (ValueError, IndexError):  # an empty file, or not what the encoding allows
             return {}
     return {pair.get(_ENTRY_KEY, ""): pair.get(_ENTRY_VALUE, "") for pair in pairs}
+
+
+def sealed(content: bytes) -> bytes:
+    """An ONNX file with the hash of its content as one more metadata property, at its end."""
+    return content + _seal(content)
+
+
+def has_seal(path: Path) -> bool | None:
+    """Whether the content of a file fits its seal; None where it has no seal.
+
+    Raises:
+        OSError: The file is not there or must not be read.
+    """
+    content = path.read_bytes()
+    length = len(_seal(b""))
+    whole, seal = content[:-length], content[-length:]
+    if not seal.startswith(_seal(b"")[:-_HASH_LENGTH]):
+        return None
+    return seal == _seal(whole)
+
+
+def _seal(content: bytes) -> bytes:
+    value = blake2b(content, digest_size=_HASH_LENGTH // 2).hexdigest().encode()
+    entry = _field(_ENTRY_KEY, _SEAL_KEY) + _field(_ENTRY_VALUE, value)
+    return _field(_MODEL_METADATA, entry)
+
+
+def _field(number: int, content: bytes) -> bytes:
+    """A field of less than 128 bytes."""
+    return bytes((number << 3 | 2, len(content))) + content
 
 
 def _length_delimited(content: _Buffer) -> Iterator[tuple[int, bytes]]:

@@ -1,6 +1,7 @@
 """Where do the converted model files live, and are they the ones this version needs?
 
-A file is recognized by the texts that the converter stored in it.
+A file is recognized by the texts that the converter stored in it, and whole if its content has the
+hash that was stored when it was written.
 """
 
 import os
@@ -11,7 +12,7 @@ from pathlib import Path
 
 from tracker.errors import ModelFileError
 from tracker.perception.models.catalog import CONVERTER_VERSION, MODELS, find_model
-from tracker.perception.models.onnx_metadata import read_metadata
+from tracker.perception.models.onnx_metadata import has_seal, read_metadata, sealed
 from tracker.user_cache import user_cache
 
 DIRECTORY_VARIABLE = "RAISED_HAND_MODELS"
@@ -23,8 +24,8 @@ class ModelState(Enum):
 
     PRESENT = "present"
     ABSENT = "absent"
-    STALE = "stale"  # readable, but from another converter version or another source
-    DAMAGED = "damaged"  # cut off, or no model file at all
+    STALE = "stale"  # readable, but from another version of the converter, or another source
+    DAMAGED = "damaged"  # cut off, not what was written, or no model file at all
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +124,7 @@ class ModelStore:
                 # Not tempfile: its files are for the owner's eyes only, and a robot's node often
                 # runs under another account than the one that fetched the models.
                 with temporary.open("xb") as file:
-                    file.write(content)
+                    file.write(sealed(content))
                     file.flush()
                     os.fsync(file.fileno())
                 os.replace(temporary, target)
@@ -148,7 +149,7 @@ class ModelStore:
         path = self._target(name)
         try:
             size = path.stat().st_size
-            metadata = read_metadata(path)
+            metadata, is_whole = read_metadata(path), has_seal(path)
         except FileNotFoundError:
             return ModelStatus(name, ModelState.ABSENT, 0, "", path)
         except OSError as error:
@@ -156,11 +157,12 @@ class ModelStore:
                 f"Cannot read the model file {path} ({error.strerror or error}); permit reading, "
                 f"or set {DIRECTORY_VARIABLE} to another folder."
             ) from error
-        if not metadata:
+        if not metadata or is_whole is False:
             return ModelStatus(name, ModelState.DAMAGED, size, "", path)
         sha256 = metadata.get("source_sha256", "")
         is_current = (
-            metadata.get("converter_version") == str(CONVERTER_VERSION)
+            is_whole is not None
+            and metadata.get("converter_version") == str(CONVERTER_VERSION)
             and sha256 == find_model(name).sha256
         )
         state = ModelState.PRESENT if is_current else ModelState.STALE
