@@ -12,9 +12,10 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from tracker.errors import ConfigError, shown
+from tracker.errors import ConfigError
 from tracker.parameter_file import NODE_NAME as NODE_NAME  # where it is looked for
 from tracker.parameter_file import is_ours, read_parameters
+from tracker.wording import shown
 
 
 @dataclass(frozen=True, slots=True)

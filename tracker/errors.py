@@ -64,9 +64,3 @@ class WorkerError(TrackerError):
 
 class CalibrationError(TrackerError, ValueError):
     """The data do not determine what should be found from them."""
-
-
-def shown(value: object, length: int = 100) -> str:
-    """A value that somebody gave, for a message: as Python writes it, and not endless."""
-    text = repr(value)
-    return text if len(text) <= length else f"{text[: length - 3]}..."

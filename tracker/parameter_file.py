@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tracker.errors import ConfigError, shown
+from tracker.errors import ConfigError
+from tracker.wording import shown
 from tracker.yaml_reading import parse_yaml, read_yaml
 
 NODE_NAME = "hand_detector"

@@ -9,13 +9,13 @@ from __future__ import annotations
 import errno
 import io
 import os
-import re
 import signal
 import sys
 from collections.abc import Callable
 from typing import NoReturn
 
 from tracker.errors import ConfigError, SceneError, TrackerError
+from tracker.wording import one_line
 
 INTERRUPTED = 130
 
@@ -43,12 +43,6 @@ def print_version(wanted: bool) -> None:
 
         print(f"raised-hand-tracker {__version__}")
         sys.exit(0)
-
-
-def one_line(text: str) -> str:
-    """A text for a terminal: control characters written out, words that do not end cut."""
-    shown = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
-    return re.sub(r"(\S{200})\S{100,}", r"\1...", shown)
 
 
 def _outcome(body: Callable[[], None]) -> tuple[int, str]:

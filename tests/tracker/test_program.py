@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from tracker.program import one_line
+from tracker.wording import one_line
 
 FULL = "/dev/full"
 STOPPED = "raised-hand: stopped; what was written until now can be read."

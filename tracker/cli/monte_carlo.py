@@ -107,7 +107,7 @@ def monte_carlo_command(
     try:
         with (
             open_executor(executor, jobs, useful) as crew,
-            counting_bar(errors, "trials", trials) as count,
+            counting_bar(errors, "trial", trials) as count,
         ):
             study = monte_carlo(
                 chosen,

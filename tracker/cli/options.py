@@ -16,7 +16,8 @@ from rich.console import Console
 from tracker.config import Config
 from tracker.errors import ConfigError
 from tracker.parameter_file import read_assignment
-from tracker.program import one_line, print_version
+from tracker.program import print_version
+from tracker.wording import one_line
 
 console = Console()
 errors = Console(stderr=True)

@@ -19,6 +19,13 @@ from rich.progress import (
 )
 from rich.text import Text
 
+from tracker.wording import counted
+
+
+def rate(per_s: float) -> str:
+    """`7,290/s`, `42/s`, `0.031/s`."""
+    return f"{per_s:,.0f}/s" if per_s >= 100.0 else f"{per_s:.2g}/s"
+
 
 @contextmanager
 def bar(console: Console, what: str) -> Iterator[Callable[[float, int], None]]:
@@ -46,7 +53,7 @@ def bar(console: Console, what: str) -> Iterator[Callable[[float, int], None]]:
         task = progress.add_task(what, total=1.0, images="")
 
         def report(share: float, images: int) -> None:
-            text = f"{images} images" if images else ""
+            text = counted(images, "image") if images else ""
             progress.update(task, completed=share, images=text)
 
         yield report
@@ -58,17 +65,17 @@ def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
 
     Args:
         console: Where to.
-        what: The things counted.
+        what: The thing counted, as `trial`.
         total: How many there will be.
 
     Yields:
         A function of how many are done; the first call tells how many were done before.
     """
     if not console.is_terminal:
-        console.print(f"Running {total} {what} ...", highlight=False)
+        console.print(f"Running {counted(total, what)} ...", highlight=False)
         yield lambda done: None
         return
-    columns = (BarColumn(), MofNCompleteColumn(), _RateColumn(what), TimeRemainingColumn())
+    columns = (BarColumn(), MofNCompleteColumn(), _RateColumn(f"{what}s"), TimeRemainingColumn())
     with Progress(*columns, console=console, speed_estimate_period=60.0) as progress:
         task = None
 
@@ -82,15 +89,19 @@ def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
 
 
 @contextmanager
-def trials_bar(console: Console, trials: int) -> Iterator[Callable[[int, float], None]]:
-    """Show how many trials of a search are done, and the best figure so far.
+def trials_bar(
+    console: Console, trials: int, unseen: int | None
+) -> Iterator[tuple[Callable[[int, float], None], Callable[[int], None]]]:
+    """Show how many trials of a search are done, and the best figure so far; then the verdict.
 
     Args:
         console: Where to.
         trials: In all.
+        unseen: Scenes that the verdict looks at; None where they are not counted.
 
     Yields:
-        A function of the number of trials and the figure (NaN before there is one).
+        A function of the number of trials and the figure (NaN before there is one), and one of the
+        number of scenes that were judged.
     """
     columns = (
         TextColumn("{task.description:<22}"),
@@ -100,17 +111,26 @@ def trials_bar(console: Console, trials: int) -> Iterator[Callable[[int, float],
         TimeRemainingColumn(),
     )
     if not console.is_terminal:
-        console.print(f"Trying {trials} configurations ...", highlight=False)
-        yield lambda done, best: None
+        console.print(f"Trying {counted(trials, 'configuration')} ...", highlight=False)
+
+        def announce(scenes: int) -> None:
+            if scenes == 0:
+                console.print("Judging the best on what no trial has seen ...", highlight=False)
+
+        yield lambda done, best: None, announce
         return
     with Progress(*columns, console=console) as progress:
         task = progress.add_task("Trying", total=trials, best="")
+        verdict = progress.add_task("Judging on the unseen", total=unseen, best="", visible=False)
 
         def report(done: int, best: float) -> None:
             text = "" if isnan(best) else f"best {best:.4g}"
             progress.update(task, completed=done, best=text)
 
-        yield report
+        def judge(scenes: int) -> None:
+            progress.update(verdict, completed=scenes, visible=True)
+
+        yield report, judge
 
 
 class _RateColumn(ProgressColumn):
@@ -119,7 +139,7 @@ class _RateColumn(ProgressColumn):
         self._what = what
 
     def render(self, task: Task) -> Text:
-        return Text(f"{self._what}, {task.speed:.3g}/s" if task.speed else self._what)
+        return Text(f"{self._what}, {rate(task.speed)}" if task.speed else self._what)
 
 
 @contextmanager

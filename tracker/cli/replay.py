@@ -27,6 +27,7 @@ from tracker.cli.options import (
 from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
+from tracker.wording import counted
 
 
 def replay_command(
@@ -113,7 +114,7 @@ def replay_command(
         print_json(result.summary)
     else:
         table = summary_table(result.history)
-        images = f"{result.history.frames_processed} images"
+        images = counted(result.history.frames_processed, "image")
         console.print(table if table.row_count else f"Nobody raised a hand in {images}.")
         print_files(files)
     for remark in result.remarks:

@@ -152,7 +152,11 @@ def tune_command(
         names = tuple(name for name in names if objective.judges(name))
     address = storage or f"sqlite:///{(out / 'tuning.db').resolve()}"
     try:
-        with processes(jobs, trials) as executor, trials_bar(errors, trials) as progress:
+        verdict = 2 * unseen if is_scenario else None
+        with (
+            processes(jobs, trials) as executor,
+            trials_bar(errors, trials, verdict) as (progress, judged),
+        ):
             tuning = tune(
                 objective,
                 names,
@@ -163,6 +167,7 @@ def tune_command(
                 jobs=workers(jobs, trials),
                 executor=executor,
                 progress=progress,
+                judged=judged,
             )
     except KeyboardInterrupt:
         errors.print(f"\nThe trials are in {address}; the same command goes on.", soft_wrap=True)

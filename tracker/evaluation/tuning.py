@@ -6,9 +6,11 @@ been tried lies in Optuna's storage: several processes share it, and a later cal
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_EXCEPTION, Executor, wait
+from contextlib import contextmanager
 from importlib import import_module
+from itertools import count
 from signal import SIG_IGN, SIGINT, signal
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -17,7 +19,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from tracker.config import Config
-from tracker.errors import ConfigError
+from tracker.errors import ConfigError, RecordingError
 from tracker.evaluation.tuning_objective import Objective
 from tracker.evaluation.tuning_result import Tuning
 from tracker.evaluation.tuning_space import suggest, within_search
@@ -28,6 +30,9 @@ if TYPE_CHECKING:
 
 #: Told how many trials are done, and the best figure so far (NaN before there is one).
 Progress = Callable[[int, float], None]
+
+#: Told how many unseen scenes the verdict has seen; 0 as it begins.
+Judged = Callable[[int], None]
 
 #: Trials drawn at random before the estimator begins, and before any is cut short.
 _BEGINNING = 10
@@ -45,6 +50,7 @@ def tune(
     jobs: int = 1,
     executor: Executor | None = None,
     progress: Progress = lambda done, best: None,
+    judged: Judged = lambda scenes: None,
 ) -> Tuning:
     """Search until the study holds so many trials, then judge the best on what no trial has seen.
 
@@ -61,16 +67,36 @@ def tune(
         jobs: Shares into which the trials are cut for the executor.
         executor: Who runs them, and the verdict; here and now where None.
         progress: Told how far it is.
+        judged: Told how far the verdict is.
 
     Raises:
-        ConfigError: Optuna is not there, the storage cannot be used or holds another search, or
-            the objective cannot judge a parameter.
+        ConfigError: Optuna is not there, the storage is none or holds another search, or the
+            objective cannot judge a parameter.
+        RecordingError: The storage cannot be read or written.
     """
     if not names or trials < 1:
         raise ConfigError(
             f"{trials} trials of {len(names)} parameters were asked for; one of each is needed."
         )
     objective.check(names)
+    with _storage_errors(storage):
+        study = _search_all(
+            objective, names, base, trials, storage, seed, jobs, executor, progress
+        )
+        return _verdict(objective, names, base, study, executor, judged)
+
+
+def _search_all(
+    objective: Objective,
+    names: Sequence[str],
+    base: Config,
+    trials: int,
+    storage: str,
+    seed: int,
+    jobs: int,
+    executor: Executor | None,
+    progress: Progress,
+) -> Study:
     study = _open(objective, names, base, storage)
     done, _ = _standing(study)
     study.set_user_attr("is_stopped", False)
@@ -95,7 +121,7 @@ def tune(
             _search(*item, progress=progress)
     else:
         _share_out(executor, work, study, progress)
-    return _verdict(objective, names, base, study, executor)
+    return study
 
 
 def _open(objective: Objective, names: Sequence[str], base: Config, storage: str) -> Study:
@@ -120,21 +146,48 @@ def _open(objective: Objective, names: Sequence[str], base: Config, storage: str
 
 
 def _load(optuna: ModuleType, storage: str, objective: Objective) -> Study:
+    study: Study = optuna.create_study(
+        storage=_opened(optuna, storage),
+        study_name=objective.name,
+        direction="minimize" if objective.is_cost else "maximize",
+        load_if_exists=True,
+    )
+    return study
+
+
+def _opened(optuna: ModuleType, storage: str) -> Any:
+    from sqlalchemy.exc import ArgumentError, NoSuchModuleError
+
+    try:
+        return optuna.storages.get_storage(storage)
+    except (ValueError, ImportError, ArgumentError, NoSuchModuleError) as error:
+        raise ConfigError(
+            f"--storage {storage}: cannot be used ({_reason(error)}); needed is an address of a "
+            "database, such as sqlite:///tuning.db."
+        ) from error
+
+
+@contextmanager
+def _storage_errors(storage: str) -> Iterator[None]:
+    """What goes wrong with a database, at any time: it is full, gone, broken, or another's."""
+    optuna = _optuna()
     from sqlalchemy.exc import SQLAlchemyError
 
     try:
-        study: Study = optuna.create_study(
-            storage=storage,
-            study_name=objective.name,
-            direction="minimize" if objective.is_cost else "maximize",
-            load_if_exists=True,
-        )
-    except (optuna.exceptions.StorageInternalError, SQLAlchemyError, ImportError) as error:
-        raise ConfigError(
-            f"--storage {storage}: cannot be used ({type(error).__name__}); needed is an address "
-            "that Optuna knows, such as sqlite:///tuning.db."
+        yield
+    except (optuna.exceptions.StorageInternalError, SQLAlchemyError) as error:
+        raise RecordingError(
+            f"--storage {storage}: cannot be read or written ({_reason(error)}); see to it, or "
+            "give another --storage or --out."
         ) from error
-    return study
+
+
+def _reason(error: BaseException) -> str:
+    """The first line of the error from which another one came."""
+    while error.__cause__ is not None:
+        error = error.__cause__
+    lines = str(getattr(error, "orig", None) or error).strip().splitlines()
+    return lines[0].rstrip(".") if lines else type(error).__name__
 
 
 def _search(
@@ -217,6 +270,7 @@ def _verdict(
     base: Config,
     study: Study,
     executor: Executor | None,
+    judged: Judged,
 ) -> Tuning:
     complete = [trial for trial in study.trials if trial.state.name == "COMPLETE"]
     if not complete:
@@ -224,6 +278,14 @@ def _verdict(
     chosen = study.best_trial
     best = base.replace(**chosen.params)
     run = map if executor is None else executor.map
+    scenes = count(1)
+    judged(0)
+
+    def told(*items: Any) -> Iterator[Any]:
+        for value in run(*items):
+            judged(next(scenes))
+            yield value
+
     return Tuning(
         source=objective.name,
         figure=objective.figure,
@@ -237,8 +299,8 @@ def _verdict(
         value=np.array([trial.value for trial in complete], dtype=float),
         tried={name: tuple(trial.params[name] for trial in complete) for name in names},
         importance=_importance(study, names),
-        unseen_base=objective.unseen(base, run),
-        unseen_best=objective.unseen(best, run),
+        unseen_base=objective.unseen(base, told),
+        unseen_best=objective.unseen(best, told),
     )
 
 

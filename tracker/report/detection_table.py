@@ -24,6 +24,7 @@ from tracker.evaluation.detection_figures import (
 from tracker.evaluation.detection_study import DetectionStudy
 from tracker.outputs import writing_into
 from tracker.report.detection_plot import draw_detection
+from tracker.wording import counted
 
 SCENE_FILES = ("evaluation.json", "episodes.csv", "minutes.csv", "evaluation.png")
 
@@ -36,8 +37,8 @@ def recall_table(study: DetectionStudy) -> Table:
     from rich.table import Table
 
     table = Table(
-        title=f"Raised hands found within {FRAMES_TO_FIND} images, {len(study.episodes)} episodes "
-        f"of seed {study.seed}",
+        title=f"Raised hands found within {FRAMES_TO_FIND} images, "
+        f"{counted(len(study.episodes), 'episode')} of seed {study.seed}",
         title_justify="left",
     )
     for name in ("factor", "level"):
@@ -59,7 +60,7 @@ def false_table(study: DetectionStudy) -> Table:
     from rich.table import Table
 
     table = Table(
-        title=f"False raises in {len(study.minutes)} minutes in which nobody calls",
+        title=f"False raises in {counted(len(study.minutes), 'minute')} in which nobody calls",
         title_justify="left",
     )
     for name in ("by", "level"):

@@ -19,6 +19,7 @@ from tracker.report.state_timeline import draw_state_timeline
 from tracker.report.states import States
 from tracker.report.summary import summary_table
 from tracker.report.trail_map import draw_trail_map
+from tracker.wording import counted
 
 _PEOPLE_LISTED = 100
 
@@ -93,7 +94,7 @@ class ReplayReport:
             settings_section(self._config),
             provenance_section(command),
         )
-        frames = f"{history.frames_processed} images over {history.duration_s:.1f} s"
+        frames = f"{counted(history.frames_processed, 'image')} over {history.duration_s:.1f} s"
         return Page(f"Replay of {Path(source).name or source}", f"{source}: {frames}", sections)
 
     def _headline(self, history: History, episodes: EpisodeReport | None) -> Facts:

@@ -13,6 +13,7 @@ from tracker.report.palette import PAPER
 from tracker.report.provenance import provenance_section, settings_section
 from tracker.report.study_plot import draw_distribution, draw_filter, draw_gospa_parts
 from tracker.report.study_table import study_table
+from tracker.wording import counted
 
 _WORST = 8
 _HEADLINES = 4
@@ -37,7 +38,7 @@ def study_page(study: Study, *, command: str = "") -> Page:
         settings_section(study.config),
         provenance_section(command),
     )
-    subtitle = f"{study.trials} trials of seed {study.seed}"
+    subtitle = f"{counted(study.trials, 'trial')} of seed {study.seed}"
     return Page(f"Monte Carlo study: {study.name}", subtitle, sections)
 
 

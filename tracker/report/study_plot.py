@@ -12,6 +12,7 @@ from tracker.containers import FloatArray
 from tracker.evaluation.consistency import mean_bounds
 from tracker.evaluation.study import FilterStudy, KnownPeopleStudy, PeopleStudy, Study
 from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
+from tracker.wording import counted
 
 _GOSPA_PARTS = ("localisation", "missed", "false")
 _KNOWN_PEOPLE = (
@@ -47,7 +48,9 @@ def draw_study(study: Study, path: str | Path) -> None:
             draw_distribution(axes, study.rows[name], title)
     else:
         _draw_people(figure, study)
-    figure.suptitle(f"{study.name}: {study.trials} trials of seed {study.seed}", color=INK)
+    figure.suptitle(
+        f"{study.name}: {counted(study.trials, 'trial')} of seed {study.seed}", color=INK
+    )
     figure.savefig(path, format="png")
 
 

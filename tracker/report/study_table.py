@@ -11,6 +11,7 @@ import numpy as np
 from tracker.evaluation.study import Figure, Study, study_as_dict
 from tracker.outputs import writing_into
 from tracker.report.study_plot import draw_study
+from tracker.wording import counted
 
 STUDY_FILES = ("study.json", "study.png", "trials.parquet")
 
@@ -23,7 +24,8 @@ def study_table(study: Study) -> Table:
     from rich.table import Table
 
     table = Table(
-        title=f"{study.name}: {study.trials} trials of seed {study.seed}\n{study.scenario.title}",
+        title=f"{study.name}: {counted(study.trials, 'trial')} of seed {study.seed}\n"
+        f"{study.scenario.title}",
         title_justify="left",
     )
     table.add_column("figure", no_wrap=True)

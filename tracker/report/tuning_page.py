@@ -11,6 +11,7 @@ from tracker.report.page import Facts, Page, Picture, Section, Table, Text
 from tracker.report.provenance import provenance_section, settings_section
 from tracker.report.tuning_plot import tuning_figure
 from tracker.report.tuning_table import parameters_table, verdict_table
+from tracker.wording import counted
 
 
 def tuning_page(tuning: Tuning, *, command: str = "") -> Page:
@@ -35,7 +36,7 @@ def tuning_page(tuning: Tuning, *, command: str = "") -> Page:
         settings_section(tuning.best),
         provenance_section(command),
     )
-    subtitle = f"best of {tuning.trials} trials (number {tuning.best_trial})"
+    subtitle = f"best of {counted(tuning.trials, 'trial')} (number {tuning.best_trial})"
     return Page(f"Tuned on {tuning.source}", subtitle, sections)
 
 

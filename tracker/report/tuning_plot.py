@@ -12,6 +12,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from tracker.config import parameter_extra, parameter_search
 from tracker.evaluation.tuning_result import Tuning
 from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
+from tracker.wording import counted
 
 #: Slices that fit below one another and still can be read.
 _SLICES = 8
@@ -46,7 +47,7 @@ def tuning_figure(tuning: Tuning) -> Figure:
         _draw_slice(axes, tuning, name)
         if place % 4 == 0:
             axes.set_ylabel(tuning.figure, fontsize=8)
-    figure.suptitle(f"{tuning.source}: {tuning.trials} trials", color=INK)
+    figure.suptitle(f"{tuning.source}: {counted(tuning.trials, 'trial')}", color=INK)
     return figure
 
 

@@ -12,6 +12,7 @@ from tracker.config_file import parameter_yaml
 from tracker.evaluation.tuning_result import Tuning, tuning_as_dict
 from tracker.outputs import writing_into
 from tracker.report.tuning_plot import draw_tuning
+from tracker.wording import counted
 
 TUNING_FILES = ("best.yaml", "tuning.json", "tuning.png")
 
@@ -23,7 +24,9 @@ def parameters_table(tuning: Tuning) -> Table:
     """One line per parameter, those that matter most first."""
     from rich.table import Table
 
-    table = Table(title=f"{tuning.source}: best of {tuning.trials} trials", title_justify="left")
+    table = Table(
+        title=f"{tuning.source}: best of {counted(tuning.trials, 'trial')}", title_justify="left"
+    )
     table.add_column("parameter", no_wrap=True)
     for name in ("before", "tuned", "importance"):
         table.add_column(name, justify="right", no_wrap=True)

@@ -14,7 +14,8 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from tracker.errors import ConfigError, SceneError, shown
+from tracker.errors import ConfigError, SceneError
+from tracker.wording import shown
 from tracker.yaml_reading import read_yaml
 
 #: How long an arm takes from the lap to beside the head; a guess from how people wave to a waiter.

@@ -1,4 +1,5 @@
 import json
+import re
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 
 from tracker.config import Config
-from tracker.errors import ConfigError
+from tracker.errors import ConfigError, RecordingError
 from tracker.evaluation.scenario import SCENARIOS
 from tracker.evaluation.tuning import tune
 from tracker.evaluation.tuning_objective import ScenarioObjective
@@ -146,7 +147,49 @@ def test_a_missing_optuna_says_how_to_get_it(storage, monkeypatch):
         tune(Bowl(), NAMES, Config(), trials=1, storage=storage)
 
 
-@pytest.mark.parametrize("address", ["nonsense", "foo://bar", "sqlite:////nowhere/at/all.db"])
+@pytest.mark.parametrize(
+    "address",
+    ["nonsense", "foo://bar", "redis://localhost:1/0", "oracle://a@b/c", "sqlite+x:///a.db", ""],
+)
 def test_a_storage_that_is_none_is_named(address):
-    with pytest.raises(ConfigError, match=f"--storage {address}: cannot be used"):
+    with pytest.raises(ConfigError, match=f"--storage {re.escape(address)}: cannot be used") as it:
         tune(Bowl(), NAMES, Config(), trials=1, storage=address)
+    assert "needed is an address of a database" in str(it.value)
+    assert "\n" not in str(it.value)
+
+
+@pytest.mark.parametrize(
+    ("prepare", "reason"),
+    [
+        (lambda path: None, "unable to open database file"),
+        (lambda path: path.parent.mkdir() or path.write_bytes(b"x" * 5000), "not a database"),
+        (lambda path: path.mkdir(parents=True), "unable to open database file"),
+    ],
+    ids=["no folder", "garbage", "a folder"],
+)
+def test_a_storage_that_cannot_be_used_is_named_with_the_true_cause(tmp_path, prepare, reason):
+    path = tmp_path / "new" / "tuning.db"
+    prepare(path)
+    with pytest.raises(RecordingError, match=f"cannot be read or written .*{reason}.*--storage"):
+        tune(Bowl(), NAMES, Config(), trials=1, storage=f"sqlite:///{path}")
+
+
+def test_a_disk_that_fills_up_while_searching_is_the_cause(storage, monkeypatch):
+    import sqlite3
+
+    from optuna.storages import RDBStorage
+    from sqlalchemy.exc import OperationalError
+
+    def fail(*_, **__):
+        cause = sqlite3.OperationalError("database or disk is full")
+        raise OperationalError("INSERT", {}, cause) from cause
+
+    monkeypatch.setattr(RDBStorage, "set_trial_intermediate_value", fail)
+    with pytest.raises(RecordingError, match="database or disk is full"):
+        tune(Bowl(), NAMES, Config(), trials=2, storage=storage)
+
+
+def test_the_verdict_tells_how_far_it_is(storage):
+    told = []
+    tune(Bowl(), NAMES, Config(), trials=1, storage=storage, judged=told.append)
+    assert told[0] == 0
