@@ -15,6 +15,8 @@ from tracker.geometry import RigidTransform, normalize_angle
 _ELEVATION_RAD = np.radians((-10.0, 40.0))
 #: Pixels along each side of the picture that are looked through.
 _GRID = 17
+#: Directions around the rim of a lens, and how far out they are: just before it ends.
+_RIM, _WITHIN_RIM = 64, 0.999
 
 
 def bearing_span_rad(
@@ -43,8 +45,17 @@ def bearing_span_rad(
 
 @lru_cache(maxsize=4)
 def _grid_rays(camera: CameraModel, image_size: tuple[int, int]) -> FloatArray:
-    """Unit vectors all over the picture, shape (G, 3), in the camera's body frame."""
+    """Unit vectors all over the picture, shape (G, 3), in the camera's body frame.
+
+    Where the lens ends within the picture, as a fisheye's circle does, its rim is among them.
+    """
     columns, rows = (np.linspace(0.0, length, _GRID) for length in image_size)
     pixels = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
     rays = camera.rays(pixels)
-    return rays[np.isfinite(rays[:, 0])]
+    end_rad = _WITHIN_RIM * camera.lens.max_off_axis_rad
+    around = np.linspace(0.0, 2.0 * np.pi, _RIM, endpoint=False)
+    aside = np.sin(end_rad) * np.stack([np.cos(around), np.sin(around)], axis=-1)
+    rim = np.column_stack([np.full(_RIM, np.cos(end_rad)), aside])
+    rim_px = camera.pixels(rim)
+    is_shown = ((rim_px >= 0.0) & (rim_px <= image_size)).all(axis=1)
+    return np.concatenate([rays[np.isfinite(rays[:, 0])], rim[is_shown]])

@@ -41,3 +41,10 @@ def test_a_camera_that_looks_down_sees_no_hands_where_it_sees_the_floor():
 def test_a_camera_that_looks_straight_down_sees_all_around():
     right, left = span_deg(pitch_deg=90.0)
     assert left - right > 320.0
+
+
+def test_a_fisheye_s_circle_within_the_picture_ends_the_view():
+    lens = (-0.1, -0.02, 0.0, 0.0)  # r - 0.1 r^3 - 0.02 r^5 turns back at 80 degrees
+    fisheye = CameraModel(180.0, 180.0, 320.0, 240.0, lens, "equidistant")
+    end = np.degrees(np.sqrt((-0.3 + np.sqrt(0.09 + 0.4)) / 0.2))
+    assert span_deg(camera=fisheye) == pytest.approx([-end, end], rel=0.01)
