@@ -1,6 +1,8 @@
 from nodes.link import Link
 from nodes.topics import Input, Output
 from tracker import Config
+from tracker.camera import CameraModel
+from tracker.messages import CameraInfo, encode
 
 START_NS = 1_000_000_000_000
 OK, WARN, ERROR = 0, 1, 2
@@ -116,3 +118,29 @@ def test_what_the_wire_knows_follows_what_is_missing_and_what_is_lost(make_wire)
     wire.settle()
     found = wire.diagnose()["images"]
     assert (found.level, found.message) == (WARN, "coming, but the socket is full")
+
+
+def test_intrinsics_that_do_not_fit_the_picture_are_told_by_both_sizes(wire):
+    info = CameraInfo(START_NS, "camera_link", 640, 360, CameraModel(400.0, 400.0, 320.0, 180.0))
+    wire.core.receive(Input.CAMERA_INFO, encode(info))
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 1)
+    wire.image(START_NS)
+    wire.settle()
+    status = wire.diagnose()["camera_info"]
+    assert status.level == WARN
+    assert "640x360" in status.message
+    assert "64x48" in status.message
+
+
+def test_a_picture_that_claims_too_many_pixels_is_counted_as_malformed(make_wire):
+    wire = make_wire(Config(picture_max_pixels=64 * 48))
+    for number, width in enumerate((64, 65)):
+        wire.image(START_NS + number * 10**9, width)
+    wire.steady_ns += 400_000_000
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 2 * 10**9)
+    wire.settle()
+    images = wire.diagnose()["images"]
+    assert images.values["malformed"] == "1"
+    assert "65x48 pixels" in images.values["last_fault"]
