@@ -27,6 +27,10 @@ _MISSING_SHARE = 0.02
 
 _FALLBACK_FPS = 30.0
 
+#: The time of a frame, in periods, counted from before a video that begins late; OpenCV 4.8 does
+#: not tell.
+_FRAME_TIME: int | None = getattr(cv2, "CAP_PROP_PTS", None)
+
 #: Larger files are not read into memory; 50 million pixels of 16 bits take 300 MB uncompressed.
 _PHOTO_MAX_BYTES = 500_000_000
 
@@ -74,21 +78,24 @@ class VideoSource:
             return
         capture = self._open()
         period_ns = round(1e9 / self._fps)
-        number, stamp_ns = 0, 0
+        number, stamp_ns, late_frames = 0, 0, 0
         try:
             while True:
                 readable, bgr = capture.read()
                 if not readable:
                     break
                 at_ns = round(capture.get(cv2.CAP_PROP_POS_MSEC) * 1e6)
+                if not number and _FRAME_TIME is not None:
+                    late_frames = round(capture.get(_FRAME_TIME))
                 if number:  # some containers know no time, and some repeat one
                     stamp_ns = at_ns if at_ns > stamp_ns else stamp_ns + period_ns
                 yield RawMessage(self._topic, "", stamp_ns, _image(stamp_ns, bgr))
                 number += 1
         finally:
             capture.release()
-        # A rate that varies makes a container's count a guess; the time tells how far it went.
-        reached = max(number, round(stamp_ns / 1e9 * self._fps) + 1)
+        # A rate that varies, or a piece cut out of a longer video, makes the container's count a
+        # guess from its end; the time tells how far it went.
+        reached = max(number, late_frames + round(stamp_ns / 1e9 * self._fps) + 1)
         if self._count - reached > max(_MISSING_SHARE * self._count, 3):
             raise RecordingError(
                 f"{self._path}: cannot be decoded beyond frame {number} of {self._count} "

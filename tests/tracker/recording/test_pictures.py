@@ -96,6 +96,21 @@ def test_frames_of_a_rate_that_varies_keep_their_own_times(tmp_path, suffix):
     np.testing.assert_allclose(stamps_s, expected_s, atol=0.011)
 
 
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="needs ffmpeg to make the video")
+@pytest.mark.skipif(not hasattr(cv2, "CAP_PROP_PTS"), reason="this OpenCV does not tell")
+def test_a_piece_of_a_longer_video_is_read_from_0_to_its_end(tmp_path):
+    write_video(tmp_path / "whole.mp4", "mp4v", count=30, fps=10.0)
+    path = tmp_path / "piece.mkv"
+    subprocess.run(
+        ["ffmpeg", "-v", "error", "-itsoffset", "7", "-i", tmp_path / "whole.mp4", "-c", "copy",
+         path],
+        check=True,
+    )  # fmt: skip
+    with open_recording(path) as recording:
+        stamps_s = np.array([log_ns for log_ns, _ in recording.events()]) / 1e9
+    np.testing.assert_allclose(stamps_s, np.arange(30) / 10, atol=0.002)
+
+
 def test_a_photo_beyond_the_limit_is_counted_and_the_others_are_read(tmp_path):
     for name, width in (("a.png", 40), ("b.jpg", 60), ("c.png", 41)):
         cv2.imwrite(str(tmp_path / name), np.zeros((50, width, 3), np.uint8))
