@@ -63,9 +63,9 @@ def _unheard(sent: list[Publisher]) -> list[str]:
 def _of_topic(publisher: Publisher, count: int, deadline_s: float) -> list[str]:
     said = []
     refused = publisher.refused
-    if refused.count:
+    if refused.times:
         said.append(
-            f"{publisher.topic}: {refused.count} subscribers ask for more {refused.policy} than "
+            f"{publisher.topic}: {refused.times} subscribers ask for more {refused.policy} than "
             "is offered, and hear nothing."
         )
     if publisher.lost:

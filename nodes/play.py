@@ -12,7 +12,8 @@ from rosbags.interfaces import Qos, QosDurability, QosReliability
 from rosbags.rosbag2 import Reader, ReaderError
 
 from nodes.arrival import Arrival
-from nodes.dds.node import Node, Publisher
+from nodes.dds.endpoints import Publisher
+from nodes.dds.node import Node
 from nodes.dds.profiles import CLOCK, DEFAULT
 from nodes.qos import PROFILES, Profile
 from nodes.topics import Input

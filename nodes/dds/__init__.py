@@ -18,7 +18,8 @@ except ModuleNotFoundError as missing:
         "pip install 'raised-hand-tracker[dds]'."
     ) from missing
 
+from nodes.dds.endpoints import Publisher
 from nodes.dds.names import Names
-from nodes.dds.node import Node, Publisher
+from nodes.dds.node import Node
 
 __all__ = ["Names", "Node", "Publisher"]

@@ -35,11 +35,11 @@ class Refusal(NamedTuple):
     """Others that cannot be connected with.
 
     Attributes:
-        count: How many came, those that have left included.
+        times: How many came, those that have left included.
         policy: What the last one disagrees in, as `reliability`.
     """
 
-    count: int
+    times: int
     policy: str
 
 

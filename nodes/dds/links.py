@@ -40,7 +40,7 @@ class LinkWatch:
         self._dropped.append(load.dropped)
         dropped = load.dropped - self._dropped[0]
         if self._images.profile.reliable:
-            if self._images.refused.count:
+            if self._images.refused.times:
                 self._node.listen_anew(self._images, reliable=False)
         elif dropped and self._images.is_offered_reliably:
             self._node.listen_anew(self._images, reliable=True)

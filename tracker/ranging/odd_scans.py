@@ -70,7 +70,7 @@ def _every(scan: Scan, step: int) -> Scan:
 def _returns(ranges: FloatArray) -> FloatArray:
     """Positive finite ranges; the farthest one may be the driver's word for "no return"."""
     found = ranges[np.isfinite(ranges) & (ranges > 0.0)]
-    return found[found < found.max(initial=0.0)]
+    return np.asarray(found[found < found.max(initial=0.0)])
 
 
 def _is_in_millimeters(ranges: FloatArray) -> bool:

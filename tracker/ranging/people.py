@@ -94,12 +94,8 @@ def _is_person_sized(found: Segments, leg_width_min_m: float, body_width_m: floa
     width = found.width_m + found.spacing_m
     is_leg = (found.beams >= 3) | ((found.beams == 2) & (width >= TROUSERS_WIDTH_MIN_M))
     is_board = (found.flatness < FLATNESS_MIN) & (found.width_m > TROUSERS_WIDTH_MAX_M)
-    return (
-        is_leg
-        & (width >= leg_width_min_m)
-        & (found.width_m <= body_width_m)
-        & ~(is_board & ~found.stands_free)
-    )
+    is_sized = (width >= leg_width_min_m) & (found.width_m <= body_width_m)
+    return np.asarray(is_leg & is_sized & ~(is_board & ~found.stands_free))
 
 
 def _farthest_m(range_m: FloatArray) -> float:

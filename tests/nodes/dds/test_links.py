@@ -94,7 +94,7 @@ def test_a_best_effort_camera_that_comes_later_is_heard_again(
     watch.report()
     until(lambda: images.profile.reliable, node)
     careless = make_node("other").publisher("image_raw", BOOL, CARELESS)
-    until(lambda: images.refused.count == 1, node)
+    until(lambda: images.refused.times == 1, node)
     watch.report()
     until(lambda: careless.subscribers == careful.subscribers == 1, node)
     careless.publish(encode(False).cdr)
@@ -108,11 +108,11 @@ def test_both_ends_name_the_policy_that_keeps_them_apart(make_node, until):
     node = make_node("hand_detector")
     latched = node.subscribe("x", BOOL, lambda cdr: None, GRAPH)
     publisher = make_node("speaker").publisher("x", BOOL)
-    until(lambda: latched.refused.count and publisher.refused.count)
+    until(lambda: latched.refused.times and publisher.refused.times)
     assert latched.refused == publisher.refused == (1, "durability")
     strict = node.subscribe("y", BOOL, lambda cdr: None)
     careless = make_node("other").publisher("y", BOOL, CARELESS)
-    until(lambda: strict.refused.count and careless.refused.count)
+    until(lambda: strict.refused.times and careless.refused.times)
     assert strict.refused == careless.refused == (1, "reliability")
     assert links._link(strict).silence == (
         "; 1 that offer less reliability than is asked for are not heard"
