@@ -85,12 +85,13 @@ class NodeCore:
         self._publish, self._has_subscribers = publish, has_subscribers
         self._log, self._now_ns, self._steady_ns = log, now_ns, steady_ns
         self._config, self._links = config, links
-        self._pipeline = Pipeline(config, detector, transforms)
-        self._inbox = Inbox()
-        self._images = self._pipeline.room.images
         names = {item: topic.name for item, topic in INPUT_TOPICS.items()}
         names[Input.IMAGES] = IMAGE_TOPICS[config.image_transport].name
-        self._diagnostics = Diagnostics(steady_ns, names | dict(topic_names or {}))
+        names |= dict(topic_names or {})
+        self._pipeline = Pipeline(config, detector, transforms, image_topic=names[Input.IMAGES])
+        self._inbox = Inbox()
+        self._images = self._pipeline.room.images
+        self._diagnostics = Diagnostics(steady_ns, names)
         self._faults = FaultLog(lambda text: log("warning", text), steady_ns)
         self._remarks = FaultLog(lambda text: log("info", text), steady_ns)
         self._busy_s = 0.0

@@ -150,7 +150,7 @@ class CameraModel:
         if self.rectified is None:
             raise ConfigError(
                 "A CameraInfo without P came; it tells how images are rectified. Calibrate the "
-                "camera, or set images_rectified: false."
+                "camera, or set image_form: raw."
             )
         return CameraModel(
             *self.rectified, width=self.width, height=self.height, sensor=self.sensor

@@ -143,9 +143,10 @@ class Config(BaseModel):
         True, "Take intrinsics and distortion from CameraInfo when it comes.",
         group="frames",
     )  # fmt: skip
-    images_rectified: bool = _parameter(
-        False, "The images are rectified (image_rect): of a CameraInfo P holds, without "
-        "distortion, instead of K with it.",
+    image_form: Literal["auto", "raw", "rectified"] = _parameter(
+        "auto", "Images as the lens shows them (raw: of a CameraInfo K holds, with the "
+        "distortion), without its distortion (rectified: P holds), or auto (rectified if their "
+        "topic is named so, as image_rect).",
         group="frames",
     )  # fmt: skip
     bearing_convention: Literal["rep103", "spec"] = _parameter(

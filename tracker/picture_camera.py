@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from tracker.camera import CameraModel
@@ -9,6 +10,8 @@ from tracker.config import Config
 from tracker.errors import ConfigError
 from tracker.notes import Note, NoteKind
 
+#: As image_proc names what it has rectified: image_rect, image_rect_color, rectified/image.
+_RECTIFIED_NAME = re.compile(r"(^|[/_])rect(ified)?([/_]|$)")
 #: The specification's camera.
 _SPECIFIED_SIZE = (640, 480)
 
@@ -24,12 +27,14 @@ class PictureCameras:
     """Gives pictures of any size their intrinsics; remembers those of the last size.
 
     Args:
-        config: `camera_fx` to `camera_height` serve where no CameraInfo fits; `images_rectified`.
+        config: `camera_fx` to `camera_height` serve where no CameraInfo fits; `image_form`.
+        image_topic: Where the pictures come from; tells whether they are rectified.
     """
 
-    def __init__(self, config: Config) -> None:
+    def __init__(self, config: Config, image_topic: str = "") -> None:
         self._configured = configured_camera(config)
-        self._is_rectified = config.images_rectified
+        self._form = config.image_form
+        self._is_named_rectified = bool(_RECTIFIED_NAME.search(image_topic))
         self._calibrated: CameraModel | None = None
         self._last: PictureCamera | None = None
 
@@ -56,7 +61,7 @@ class PictureCameras:
         if told is None:
             return _assumed(self._configured, width, height)
         try:
-            told = told.for_rectified() if self._is_rectified else told
+            told = self._as_sent(told)
             camera = told.for_picture(width, height)
         except ConfigError as error:
             assumed = _assumed(self._configured, width, height)
@@ -69,6 +74,11 @@ class PictureCameras:
         # Before it is scaled: whether the driver has told the truth about its own size.
         told = camera if told.width is None else told
         return PictureCamera(camera, notes + _off_middle(told, "CameraInfo", _DRIVER_REMEDY))
+
+    def _as_sent(self, told: CameraModel) -> CameraModel:
+        """K with the distortion, or P; a camera that is named rectified may send no P."""
+        is_named = self._form == "auto" and self._is_named_rectified and told.rectified is not None
+        return told.for_rectified() if self._form == "rectified" or is_named else told
 
 
 def configured_camera(config: Config) -> CameraModel:

@@ -59,6 +59,7 @@ class Pipeline:
         transforms: Knows where frames were; by default a buffer of the project's own. A node may
             pass one around tf2's.
         watch: Passed on to the tracker.
+        image_topic: Where images come from; tells whether they are rectified (`image_form`).
     """
 
     def __init__(
@@ -68,6 +69,7 @@ class Pipeline:
         transforms: Transforms | None = None,
         *,
         watch: Watch | None = None,
+        image_topic: str = "",
     ) -> None:
         self.config = config or Config()
         if detector is None:
@@ -78,7 +80,7 @@ class Pipeline:
         self.tracker = PersonTracker(self.config, watch=watch)
         self.room = WaitingRoom(self.config.processing_rate, transforms)
         self.camera = configured_camera(self.config)
-        self._cameras = PictureCameras(self.config)
+        self._cameras = PictureCameras(self.config, image_topic)
         self._sustained_ns = -1
         self._background = Background()
         self._last_stamp_ns: int | None = None

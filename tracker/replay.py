@@ -112,7 +112,7 @@ def replay(
             if not recording.has_scans or recording.image_topics:
                 recording.require_images()
             problems.remark("no images in the recording: nobody can be seen raising a hand")
-        pipeline = Pipeline(config, detector, watch=watch)
+        pipeline = Pipeline(config, detector, watch=watch, image_topic=recording.read_topics.image)
         held.enter_context(FolderLock(out))
         with ReplayOutputs(out, config) as outputs:
 

@@ -116,7 +116,7 @@ def test_rectified_images_have_the_intrinsics_of_their_own():
     lens = (-0.3, 0.1, 0.0, 0.0, 0.0)
     rectified = Pinhole(380.0, 381.0, 330.0, 236.0)
     info = CameraModel(460.0, 460.0, 320.0, 240.0, lens, "plumb_bob", 640, 480, None, rectified)
-    cameras = PictureCameras(Config(images_rectified=True))
+    cameras = PictureCameras(Config(image_form="rectified"))
     cameras.calibrate(info)
     camera, notes = cameras.of(320, 240)
     assert (camera.fx, camera.fy, camera.cx, camera.cy) == (190.0, 190.5, 165.0, 118.0)
@@ -125,8 +125,35 @@ def test_rectified_images_have_the_intrinsics_of_their_own():
 
 
 def test_rectified_images_without_their_intrinsics_are_told():
-    cameras = PictureCameras(Config(images_rectified=True))
+    cameras = PictureCameras(Config(image_form="rectified"))
     cameras.calibrate(CameraModel(460.0, 460.0, 320.0, 240.0, (), "", 640, 480))
     found = cameras.of(640, 480)
     assert kinds(found) == [NoteKind.CAMERA_INFO_REFUSED]
-    assert "images_rectified: false" in found.notes[0].text
+    assert "image_form: raw" in found.notes[0].text
+
+
+@pytest.mark.parametrize(
+    ("topic", "fx"),
+    [
+        ("/camera/image_rect", 380.0),
+        ("image_rect_color/compressed", 380.0),
+        ("/rectified/image", 380.0),
+        ("/camera/image_raw", 460.0),
+        ("/rectangle/image", 460.0),
+        ("", 460.0),
+    ],
+)
+def test_the_topic_s_name_tells_whether_images_are_rectified(topic, fx):
+    lens, rectified = (-0.3, 0.1, 0.0, 0.0, 0.0), Pinhole(380.0, 381.0, 330.0, 236.0)
+    info = CameraModel(460.0, 460.0, 320.0, 240.0, lens, "plumb_bob", 640, 480, None, rectified)
+    cameras, raw = PictureCameras(Config(), topic), PictureCameras(Config(image_form="raw"), topic)
+    cameras.calibrate(info)
+    raw.calibrate(info)
+    assert cameras.of(640, 480).camera.fx == fx
+    assert raw.of(640, 480).camera.fx == 460.0
+
+
+def test_a_topic_named_rectified_without_p_has_k():
+    cameras = PictureCameras(Config(), "/camera/image_rect")
+    cameras.calibrate(CameraModel(460.0, 460.0, 320.0, 240.0, (), "", 640, 480))
+    assert cameras.of(640, 480).notes == ()
