@@ -5,6 +5,7 @@ from __future__ import annotations
 from tracker.clock_offset import ClockOffset
 from tracker.containers import CameraImage, FrameResult, Scan
 from tracker.scan_use import ScanUse
+from tracker.transforms import StampedTransform
 
 #: A scanner that serves fewer images than this share is worth a word.
 _SERVED_SHARE = 0.5
@@ -17,6 +18,7 @@ class Problems:
         self._faults = _Kinds()
         self._remarks = _Kinds()
         self._scan_use = ScanUse()
+        self._parent_of: dict[str, str] = {}
         self._image_clock, self._scan_clock = ClockOffset(), ClockOffset()
 
     def add(self, kind: str, text: str) -> None:
@@ -28,11 +30,13 @@ class Problems:
         self._remarks.add(kind or text, text)
 
     def note_arrival(self, event: object, arrived_ns: int) -> None:
-        """Compare a message's stamp with the time at which it was recorded."""
+        """Compare a stamp with the time of recording, and the parents of each frame."""
         if isinstance(event, CameraImage):
             self._image_clock.add(event.stamp_ns, arrived_ns)
         elif isinstance(event, Scan):
             self._scan_clock.add(event.stamp_ns, arrived_ns)
+        elif isinstance(event, StampedTransform):
+            self._note_parent(event.child.lstrip("/"), event.parent.lstrip("/"))
 
     def note_frame(self, result: FrameResult) -> None:
         """Pick the faults from what the pipeline noted about one image."""
@@ -65,6 +69,15 @@ class Problems:
         elif use.used < _SERVED_SHARE * use.frames:
             self.remark(
                 f"a scan was used in {use.used} of {use.frames} images only: {use.reason()}"
+            )
+
+    def _note_parent(self, child: str, parent: str) -> None:
+        before = self._parent_of.setdefault(child, parent)
+        if before != parent:
+            self.add(
+                f"parents of {child}",
+                f"the frame {child!r} has two parents, {before!r} and {parent!r}: two publishers "
+                "send its transform, and poses jump from one to the other. Stop one of them.",
             )
 
     def lines(self) -> tuple[str, ...]:

@@ -29,6 +29,7 @@ from tracker.report.overview import draw_overview
 from tracker.report.summary import summarize, write_summary
 from tracker.tracking.innovations import Watch
 from tracker.waiting import Verdict
+from tracker.wording import listing
 
 #: Told what share of the recording is done, from 0 to 1, and how many images were processed.
 Progress = Callable[[float, int], None]
@@ -148,6 +149,8 @@ def replay(
         _note_missing(pipeline, recording, history, problems, config)
         if recording.has_scans:
             problems.note_scan_use(config.scan_max_age_s)
+        for reason in recording.unread_lines():
+            problems.add(reason, reason)
         for reason in recording.skipped_lines():
             problems.add("skipped", reason)
         remarks = (*recording.notes, *problems.remarks())
@@ -191,7 +194,7 @@ def _note_missing(
     """A bag whose frames never connect gives no pose: a problem of the input."""
     if not recording.is_bag or not history.frames_processed or len(history.camera_path):
         return
-    heard = ", ".join(sorted(pipeline.transforms.frames)) or "none"
+    heard = listing(sorted(pipeline.transforms.frames)) or "none"
     problems.add(
         "missing transforms",
         f"no transform from {config.camera_frame!r} to {config.fixed_frame!r} at any image's "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 
 def shown(value: object, length: int = 100) -> str:
@@ -20,3 +21,10 @@ def one_line(text: str) -> str:
     """A text with its control characters written out, and words that do not end cut."""
     plain = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
     return re.sub(r"(\S{200})\S{100,}", r"\1...", plain)
+
+
+def listing(names: Iterable[str], most: int = 12) -> str:
+    """Names with commas between; of many, the first and the number of the others."""
+    found = list(names)
+    told = ", ".join(one_line(name) for name in found[:most])
+    return f"{told} and {len(found) - most} more" if len(found) > most else told

@@ -10,12 +10,17 @@ import pytest
 from tracker import CameraImage, Config, Scan
 from tracker.camera import CameraModel
 from tracker.errors import ConfigError, RecordingError
+from tracker.geometry import RigidTransform
 from tracker.messages import CameraInfo
 from tracker.outputs import FolderLock
 from tracker.recording import RecordingWriter, open_recording
 from tracker.replay import replay
 from tracker.transforms import StampedTransform
 
+AT_ORIGIN = tuple(
+    StampedTransform(0, "map", frame, RigidTransform(), is_static=True)
+    for frame in ("camera_link", "laser")
+)
 DATA = Path(__file__).parents[2] / "../shared/data"
 START_NS = 1_700_000_000_000_000_000
 SECOND_NS = 1_000_000_000
@@ -301,3 +306,11 @@ def test_a_replay_that_is_stopped_leaves_the_earlier_one_s_files(tmp_path, write
         assert list(recording.topics)
     replay(bag, out, detector=hand_ahead)
     assert {path.name for path in out.iterdir()} == {*names, ".lock"}
+
+
+def test_two_parents_of_a_frame_are_a_problem_that_names_both(tmp_path, write_bag, hand_ahead):
+    link = StampedTransform(0, "base_footprint", "laser", RigidTransform(), is_static=True)
+    links = (*AT_ORIGIN, link)
+    bag = write_bag(tmp_path / "in.mcap", links=links)
+    problems = replay(bag, tmp_path / "out", detector=hand_ahead).problems
+    assert any("'laser' has two parents, 'map' and 'base_footprint'" in line for line in problems)

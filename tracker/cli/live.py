@@ -11,6 +11,7 @@ import typer
 from tracker.cli.options import complain, console, errors
 from tracker.cli.progress import bar
 from tracker.errors import ConfigError
+from tracker.wording import one_line
 
 
 def play_command(
@@ -50,7 +51,7 @@ def play_command(
     for sentence in played.skipped + played.doubts:
         complain(sentence)
     for name, count in played.counts.items():
-        console.print(f"{name}: {count}", highlight=False, soft_wrap=True)
+        console.print(f"{one_line(name)}: {count}", highlight=False, soft_wrap=True)
 
 
 def echo_command(

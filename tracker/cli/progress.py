@@ -121,14 +121,14 @@ def trials_bar(
         return
     with Progress(*columns, console=console) as progress:
         task = progress.add_task("Trying", total=trials, best="")
-        verdict = progress.add_task("Judging on the unseen", total=unseen, best="", visible=False)
+        verdict = progress.add_task("Judging on the unseen", total=unseen, best="", one_line=False)
 
         def report(done: int, best: float) -> None:
             text = "" if isnan(best) else f"best {best:.4g}"
             progress.update(task, completed=done, best=text)
 
         def judge(scenes: int) -> None:
-            progress.update(verdict, completed=scenes, visible=True)
+            progress.update(verdict, completed=scenes, one_line=True)
 
         yield report, judge
 

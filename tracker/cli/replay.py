@@ -27,7 +27,7 @@ from tracker.cli.options import (
 from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
-from tracker.wording import counted
+from tracker.wording import counted, one_line
 
 
 def replay_command(
@@ -44,6 +44,8 @@ def replay_command(
     image_topic: Annotated[str, typer.Option(help="Camera images.")] = "/image_raw",
     scan_topic: Annotated[str, typer.Option(help="LiDAR scans.")] = "/scan",
     camera_info_topic: Annotated[str, typer.Option(help="Intrinsics.")] = "/camera_info",
+    tf_topic: Annotated[str, typer.Option(help="Moving transforms.")] = "/tf",
+    tf_static_topic: Annotated[str, typer.Option(help="Lasting transforms.")] = "/tf_static",
     stamps: Annotated[
         str,
         typer.Option(help="Which time counts: `header` (the sensor's) or `log` (the recorder's)."),
@@ -83,7 +85,13 @@ def replay_command(
     compile_tracker_first(errors)
     watched = ReplayReport(parameters) if report is not None else None
     watchers: list[Watcher] = [watched.watch] if watched is not None else []
-    topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
+    topics = Topics(
+        image=image_topic,
+        scan=scan_topic,
+        camera_info=camera_info_topic,
+        tf=tf_topic,
+        tf_static=tf_static_topic,
+    )
     with ExitStack() as stack:
         if view or save_view is not None:
             viewer = stack.enter_context(RerunView(live=view, save=save_view))
@@ -118,7 +126,7 @@ def replay_command(
         console.print(table if table.row_count else f"Nobody raised a hand in {images}.")
         print_files(files)
     for remark in result.remarks:
-        errors.print(f"note: {remark}", highlight=False, markup=False, soft_wrap=True)
+        errors.print(f"note: {one_line(remark)}", highlight=False, markup=False, soft_wrap=True)
     for problem in result.problems:
         complain(problem)
     if result.problems:

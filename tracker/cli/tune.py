@@ -89,6 +89,12 @@ def tune_command(
     camera_info_topic: Annotated[
         str, typer.Option(help="Intrinsics.", rich_help_panel=_RECORDINGS)
     ] = "/camera_info",
+    tf_topic: Annotated[
+        str, typer.Option(help="Moving transforms.", rich_help_panel=_RECORDINGS)
+    ] = "/tf",
+    tf_static_topic: Annotated[
+        str, typer.Option(help="Lasting transforms.", rich_help_panel=_RECORDINGS)
+    ] = "/tf_static",
 ) -> None:
     """Search for the parameters that serve a scenario or your own recording best.
 
@@ -146,7 +152,13 @@ def tune_command(
             source, seed=seed, parts=scenes, scene_s=scene_s, unseen=unseen
         )
     else:
-        topics = Topics(image=image_topic, scan=scan_topic, camera_info=camera_info_topic)
+        topics = Topics(
+            image=image_topic,
+            scan=scan_topic,
+            camera_info=camera_info_topic,
+            tf=tf_topic,
+            tf_static=tf_static_topic,
+        )
         objective = _recording(Path(source), base, topics)
     if not params:
         names = tuple(name for name in names if objective.judges(name))

@@ -14,8 +14,9 @@ from tracker.recording.pictures import (
     VideoSource,
     photos_in,
 )
-from tracker.recording.recording import Recording, Topics
+from tracker.recording.recording import Recording
 from tracker.recording.sources import Source
+from tracker.recording.topics import Topics
 
 _BAG_SUFFIXES = frozenset({".mcap", ".db3", ".bag", ".mcap.zstd", ".db3.zstd"})
 

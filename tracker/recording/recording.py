@@ -15,33 +15,13 @@ from tracker.errors import RecordingError, TrackerError
 from tracker.messages import DECODABLE, Event, types
 from tracker.messages.picture_size import MAX_PIXELS
 from tracker.recording.sources import RawMessage, Source, TopicInfo, seconds_into
+from tracker.recording.topics import IMAGES, TRANSFORMS, Topics, TopicTable
+from tracker.wording import listing, one_line
 
 #: Messages whose stamps are compared with the log's time, and the offset that is worth a word.
 _STAMPS_COMPARED, _WORTH_A_WORD_S = 10, 1.0
 
-_IMAGES = (types.IMAGE, types.COMPRESSED_IMAGE)
 _PICTURES = ("video frames", "photos")
-
-
-@dataclass(frozen=True, slots=True)
-class Topics:
-    """Where a recording holds what.
-
-    Attributes:
-        image: Pictures; `<image>/compressed` is taken where the topic itself is missing.
-        scan: LiDAR scans; where it is missing and there is one other topic of scans, that one.
-        camera_info: Intrinsics; where it is missing, the `camera_info` beside the image topic.
-        tf: Moving transforms.
-        tf_static: Lasting transforms.
-        truth: Simulated people.
-    """
-
-    image: str = "/image_raw"
-    scan: str = "/scan"
-    camera_info: str = "/camera_info"
-    tf: str = "/tf"
-    tf_static: str = "/tf_static"
-    truth: str = "/truth/people"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +89,7 @@ class Recording(Closing):
         self._asked = topics
         self.notes = list(source.notes)
         self.topics = self.summary.topics
+        self._table = TopicTable(self.topics)
         self.read_topics = self._find_topics(topics)
         self._note_stamps()
 
@@ -119,35 +100,33 @@ class Recording(Closing):
     @property
     def has_images(self) -> bool:
         """Pictures are on the image topic."""
-        return self._holds(self.read_topics.image, *_IMAGES, *_PICTURES)
+        return self._table.holds(self.read_topics.image, *IMAGES, *_PICTURES)
 
     @property
     def image_topics(self) -> list[str]:
         """Every topic with pictures, whether it is the one asked for or not."""
-        return [topic for topic in self.topics if self._holds(topic, *_IMAGES)]
+        return self._table.of_type(*IMAGES)
 
     @property
     def has_scans(self) -> bool:
         """Scans are on the scan topic."""
-        return self._holds(self.read_topics.scan, types.LASER_SCAN)
+        return self._table.holds(self.read_topics.scan, types.LASER_SCAN)
 
     @property
     def has_camera_info(self) -> bool:
         """Intrinsics are on the camera_info topic."""
-        return self._holds(self.read_topics.camera_info, types.CAMERA_INFO)
+        return self._table.holds(self.read_topics.camera_info, types.CAMERA_INFO)
 
     @property
     def has_transforms(self) -> bool:
         """Transforms are on one of their topics."""
-        kinds = (types.TF_MESSAGE, types.TF_MESSAGE_ROS1)
-        return self._holds(self.read_topics.tf, *kinds) or self._holds(
-            self.read_topics.tf_static, *kinds
-        )
+        names = (self.read_topics.tf, self.read_topics.tf_static)
+        return any(self._table.holds(name, *TRANSFORMS) for name in names)
 
     @property
     def has_truth(self) -> bool:
         """Simulated people are on the truth topic."""
-        return self._holds(self.read_topics.truth, types.DETECTIONS)
+        return self._table.holds(self.read_topics.truth, types.DETECTIONS)
 
     @property
     def is_bag(self) -> bool:
@@ -163,7 +142,7 @@ class Recording(Closing):
     def skipped_lines(self) -> list[str]:
         """One sentence for each topic of which something could not be used."""
         return [
-            f"{topic}: {skipped.count} not usable, the first {skipped.first}"
+            f"{one_line(topic)}: {skipped.count} not usable, the first {skipped.first}"
             for topic, skipped in sorted(self.skipped.items())
         ]
 
@@ -176,21 +155,25 @@ class Recording(Closing):
         if self.has_images:
             return
         holding = self.image_topics
-        what = ", ".join(
-            f"{topic} ({info.type_name}, {info.count})"
-            for topic, info in sorted(self.topics.items())
-        )
         remedy = (
-            f"Pass --image-topic {holding[0]}"
+            f"Pass --image-topic {listing(holding)}"
             if len(holding) == 1
-            else f"Pass --image-topic with one of {', '.join(holding)}"
+            else f"Pass --image-topic with one of {listing(holding)}"
             if holding
             else "A recording with images is needed"
         )
         raise RecordingError(
-            f"{self.path}: no images on {self._asked.image}; the recording holds "
-            f"{what or 'nothing'}. {remedy}."
+            f"{self.path}: no images on {one_line(self._asked.image)}; the recording holds "
+            f"{self._table.described() or 'nothing'}. {remedy}."
         )
+
+    def unread_lines(self) -> list[str]:
+        """What a sensor recorded that is not read, and what to do: a line for each."""
+        lines = (
+            self._table.unread_scans(self.read_topics.scan),
+            self._table.unread_transforms(self.read_topics),
+        )
+        return [line for line in lines if line]
 
     def events(self) -> Iterator[tuple[int, Event]]:
         """Everything the sensors said, from the beginning, with constant memory.
@@ -215,7 +198,7 @@ class Recording(Closing):
 
     def _lasting(self) -> list[Event]:
         found: list[Event] = []
-        if self._holds(self.read_topics.tf_static, types.TF_MESSAGE, types.TF_MESSAGE_ROS1):
+        if self._table.holds(self.read_topics.tf_static, *TRANSFORMS):
             try:
                 for message in self._source.messages({self.read_topics.tf_static}):
                     found += self._read(message, is_static=True)
@@ -244,29 +227,16 @@ class Recording(Closing):
         names = self.read_topics
         used = {names.image, names.scan, names.camera_info, names.tf, names.tf_static}
         used |= {names.truth} if self._with_truth else set()
-        return {name for name in used if self._holds(name, *DECODABLE, *_PICTURES)}
-
-    def _holds(self, topic: str, *type_names: str) -> bool:
-        info = self.topics.get(topic)
-        return info is not None and info.type_name in type_names
+        return {name for name in used if self._table.holds(name, *DECODABLE, *_PICTURES)}
 
     def _find_topics(self, asked: Topics) -> Topics:
-        """Where the asked-for topics are missing, the places where these data usually are."""
-        found = asked
-        compressed = f"{asked.image}/compressed"
-        if asked.image not in self.topics and self._holds(compressed, *_IMAGES):
-            found = replace(found, image=compressed)
-        scans = [name for name in self.topics if self._holds(name, types.LASER_SCAN)]
-        if asked.scan not in self.topics and len(scans) == 1:
-            found = replace(found, scan=scans[0])
-        namespace = asked.image.rsplit("/", 1)[0]
-        beside = f"{namespace}/camera_info"
-        if asked.camera_info not in self.topics and self._holds(beside, types.CAMERA_INFO):
-            found = replace(found, camera_info=beside)
-        for name in ("image", "scan", "camera_info"):
+        found = self._table.find(asked)
+        for name in ("image", "scan", "camera_info", "tf", "tf_static"):
             before, after = getattr(asked, name), getattr(found, name)
             if before != after:
-                self.notes.append(f"{self.path}: nothing on {before}; {after} is read instead.")
+                self.notes.append(
+                    f"{self.path}: nothing on {one_line(before)}; {one_line(after)} is read instead."
+                )
         return found
 
     def _note_stamps(self) -> None:
