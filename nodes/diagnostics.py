@@ -289,6 +289,7 @@ class Diagnostics:
             why = f"nobody is reported: no image was processed for {silence_s:.1f} s"
             return Status("customers", WARN, why)
         tracks = self._last.tracks
+        refusals = self._last.hands.refusals.most_common()
         confirmed, raised = int(tracks.confirmed.sum()), int(tracks.raised.sum())
         chosen = tracks.selected_id
         return Status(
@@ -300,6 +301,7 @@ class Diagnostics:
                 "confirmed": confirmed,
                 "raised": raised,
                 "selected_id": "none" if chosen is None else chosen,
+                "hands_not_raised": "; ".join(f"{why.words}: {count}" for why, count in refusals),
                 "has_pose": self._last.customer_pose is not None,
             },
         )

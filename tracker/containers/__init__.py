@@ -11,7 +11,7 @@ from tracker.containers.arrays import (
     IntArray,
     check_stamp,
 )
-from tracker.containers.hands import Hands
+from tracker.containers.hands import Hands, Refusal
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import MeasurementModel, Measurements
 from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
@@ -31,6 +31,7 @@ __all__ = [
     "Measurements",
     "PerceptionWork",
     "Pose",
+    "Refusal",
     "Scan",
     "Tracks",
     "Truth",

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, fields
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
 
-from tracker.containers.arrays import FLAGS, NUMBERS, BoolArray, FloatArray, check_rows, select
+from tracker.containers.arrays import (
+    COUNTS,
+    FLAGS,
+    NUMBERS,
+    BoolArray,
+    FloatArray,
+    IntArray,
+    check_rows,
+    select,
+)
 
 _LAYOUT = {
     "landmarks_px": (NUMBERS, (21, 2)),
@@ -17,6 +28,45 @@ _LAYOUT = {
     "raise_measure": (NUMBERS, ()),
     "torso_px": (NUMBERS, (2,)),
     "pending": (FLAGS, ()),
+    "refusal": (COUNTS, ()),
+}
+
+
+class Refusal(IntEnum):
+    """Why a hand that was found is not raised."""
+
+    NO_REASON = 0
+    NOT_UP = 1
+    LEANS = 2
+    CLOSED = 3
+    UNSURE = 4
+    TOO_BRIEF = 5
+    OWNER_UNKNOWN = 6
+    AT_HEAD = 7
+    BELOW_SHOULDERS = 8
+    AT_REST = 9
+    ON_FACE = 10
+    ARM_DOWN = 11
+
+    @property
+    def words(self) -> str:
+        """For people, in a few words."""
+        return _WORDS[self]
+
+
+_WORDS = {
+    Refusal.NO_REASON: "not up",
+    Refusal.NOT_UP: "fingers not up",
+    Refusal.LEANS: "leans aside",
+    Refusal.CLOSED: "fingers not spread",
+    Refusal.UNSURE: "unsure hand",
+    Refusal.TOO_BRIEF: "just up",
+    Refusal.OWNER_UNKNOWN: "owner unknown",
+    Refusal.AT_HEAD: "at the head",
+    Refusal.BELOW_SHOULDERS: "below the shoulders",
+    Refusal.AT_REST: "at hip or knee",
+    Refusal.ON_FACE: "on a face",
+    Refusal.ARM_DOWN: "arm not up",
 }
 
 
@@ -37,6 +87,8 @@ class Hands:
             that is not known. None means that of no hand.
         pending: Shape (H,), bool: up by the rule, but too unsure or too short a time to count as
             raised unless its owner's body says so. None means no hand.
+        refusal: Shape (H,), int64: of each hand that is not raised the `Refusal`; 0 for raised
+            ones, and where the detector gives no reason. None means 0 for all.
     """
 
     landmarks_px: FloatArray
@@ -46,12 +98,15 @@ class Hands:
     raise_measure: FloatArray
     torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
     pending: BoolArray = None  # type: ignore[assignment]  # False takes its place
+    refusal: IntArray = None  # type: ignore[assignment]  # 0 takes its place
 
     def __post_init__(self) -> None:
         if self.torso_px is None:
             object.__setattr__(self, "torso_px", np.full((len(self.landmarks_px), 2), np.nan))
         if self.pending is None:
             object.__setattr__(self, "pending", np.zeros(len(self.landmarks_px), dtype=bool))
+        if self.refusal is None:
+            object.__setattr__(self, "refusal", np.zeros(len(self.landmarks_px), dtype=np.int64))
         check_rows(self, len(self.landmarks_px), _LAYOUT)
 
     def __len__(self) -> int:
@@ -85,6 +140,11 @@ class Hands:
     def is_owned(self) -> BoolArray:
         """Shape (H,): the torso of whose hand it is is known."""
         return np.asarray(np.isfinite(self.torso_px).all(axis=-1))
+
+    @property
+    def refusals(self) -> Counter[Refusal]:
+        """How many hands are not raised for which reason."""
+        return Counter(Refusal(code) for code in self.refusal[~self.raised].tolist())
 
     @property
     def length_px(self) -> FloatArray:

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, Hands, ImageArray, Tracks
+from tracker.containers import CameraImage, Hands, ImageArray, Refusal, Tracks
 from tracker.perception.pictures import shrink_picture
 from tracker.perception.raise_rules import MEASURE_UNITS
 
@@ -48,9 +48,9 @@ def draw_debug_image(
     """The camera's picture, shrunk by `downscale_factor`, with everything found in it.
 
     Every hand shows its landmarks and a circle at the wrist; a raised one `HAND RAISED` with its
-    measure; one that belongs to a track the person's number, and whether the streak calls the hand
-    raised. Who is served is framed and stands out. `NO HAND DETECTED` is written only where there
-    is none.
+    measure; the nearest of the others, the largest, why it is not raised; one that belongs to a
+    track the person's number, and whether the streak calls the hand raised. Who is served is
+    framed and stands out. `NO HAND DETECTED` is written only where there is none.
 
     Args:
         image: The picture.
@@ -71,9 +71,12 @@ def draw_debug_image(
         is_selected = _is_selected(tracks, owners[row])
         color = RAISED_COLOR if hands.raised[row] else LOWERED_COLOR
         _draw_hand(canvas, points[row], color, is_selected, pen)
+    nearest = _nearest_not_raised(hands)
     taken: list[tuple[int, int, int, int]] = []
     for row in range(len(hands)):
         lines = _lines_of_hand(hands, row, tracks, owners[row], config)
+        if row == nearest:
+            lines.append(_reason(Refusal(int(hands.refusal[row]))))
         _write_beside(canvas, points[row], lines, taken)
     if len(hands) == 0:
         _write_notice(canvas, _Label(("NO HAND DETECTED", "NO HAND"), WARNING_COLOR))
@@ -135,6 +138,17 @@ def _lines_of_hand(
         variants = (f"HAND RAISED {measure} {unit}", f"HAND RAISED {measure}", f"RAISED {measure}")
         lines.append(_Label((*variants, measure), RAISED_COLOR))
     return lines
+
+
+def _nearest_not_raised(hands: Hands) -> int | None:
+    """The row of the largest hand that is not raised."""
+    if hands.raised.all():
+        return None
+    return int(np.argmax(np.where(hands.raised, -1.0, hands.length_px)))
+
+
+def _reason(refusal: Refusal) -> _Label:
+    return _Label((f"not raised: {refusal.words}", refusal.words), LOWERED_COLOR)
 
 
 def _status(hands: Hands, tracks: Tracks | None, config: Config) -> _Label:

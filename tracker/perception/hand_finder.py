@@ -91,10 +91,18 @@ class HandFinder:
         found, last_rows = self._follower.step(
             image, self._config, expected_px, self._budget, suggested, spared
         )
-        raised, measure, pending = self._memory.judge(
+        said = self._memory.judge(
             image.stamp_ns, found, last_rows, (image.width, image.height), self._config
         )
-        return Hands(found.points_px, found.score, found.right, raised, measure, pending=pending)
+        return Hands(
+            found.points_px,
+            found.score,
+            found.right,
+            said.raised,
+            said.measure,
+            pending=said.pending,
+            refusal=said.refusal,
+        )
 
     def reset(self) -> None:
         """Forget the hands of earlier images."""

@@ -12,7 +12,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, Hands
 from tracker.errors import ConfigError
 from tracker.perception.pictures import continues, shrink_picture
-from tracker.perception.raise_rules import judge_raised
+from tracker.perception.raise_rules import judge_raised, rule_refusals
 
 #: What mediapipe is opened with anew when it changes.
 _GRAPH_PARAMETERS = (
@@ -55,7 +55,9 @@ class MediapipeHands:
         # It takes the picture for a mirrored one.
         right = [side.score if side.label == "Left" else 1.0 - side.score for side in sides]
         raised, measure = judge_raised(landmarks, size, self._config)
-        return Hands(landmarks, np.ones(len(landmarks)), np.array(right), raised, measure)
+        refusal = rule_refusals(raised, measure, self._config)
+        sure = np.ones(len(landmarks))
+        return Hands(landmarks, sure, np.array(right), raised, measure, refusal=refusal)
 
     def reset(self) -> None:
         """Forget the hands of earlier images."""

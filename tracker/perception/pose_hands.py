@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import BoolArray, CameraImage, FloatArray, Hands
+from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, Refusal
 from tracker.perception.bodies import ELBOWS, WRISTS, Bodies
 from tracker.perception.body_detector import BodyDetector
 from tracker.perception.pose_rules import judge_arms
@@ -94,6 +94,7 @@ def draw_hands(
         raised[person, side],
         measure,
         torso,
+        refusal=np.where(raised[person, side], Refusal.NO_REASON, Refusal.ARM_DOWN),
     )
 
 

@@ -2,14 +2,38 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.containers import BoolArray, FloatArray, IntArray, Refusal
 from tracker.perception.landmarks import Landmarks
-from tracker.perception.raise_rules import MIDDLE_TIP, WRIST, judge_raised, palm_rule
+from tracker.perception.raise_rules import (
+    MIDDLE_TIP,
+    WRIST,
+    judge_raised,
+    palm_rule,
+    rule_refusals,
+)
 
 _NEVER_NS = np.iinfo(np.int64).max
+
+
+class Verdict(NamedTuple):
+    """What the rule says about the hands of an image.
+
+    Attributes:
+        raised: Shape (H,).
+        measure: Shape (H,): what was compared with the threshold.
+        pending: Shape (H,); see `Hands.pending`.
+        refusal: Shape (H,): of `Refusal`, for those not raised.
+    """
+
+    raised: BoolArray
+    measure: FloatArray
+    pending: BoolArray
+    refusal: IntArray
 
 
 class RaiseMemory:
@@ -33,7 +57,7 @@ class RaiseMemory:
         last_rows: IntArray,
         image_size: tuple[int, int],
         config: Config,
-    ) -> tuple[BoolArray, FloatArray, BoolArray]:
+    ) -> Verdict:
         """Verdict on each hand.
 
         Args:
@@ -42,17 +66,14 @@ class RaiseMemory:
             last_rows: Shape (H,): the row of each in the last call; -1 for new hands.
             image_size: Width and height in pixels.
             config: The raise rule and its thresholds.
-
-        Returns:
-            Verdict of shape (H,), the measure of shape (H,) that was compared, and which hands
-            are pending, shape (H,).
         """
         points = hands.points_px
         rises, measure = judge_raised(points, image_size, config)
+        refusal = rule_refusals(rises, measure, config)
         if config.raise_rule == "image":
             self._up_since_ns = np.full(len(hands), _NEVER_NS)
             self._rose = np.zeros(len(hands), dtype=bool)
-            return rises, measure, self._rose
+            return Verdict(rises, measure, self._rose, refusal)
         lean_max_rad = np.radians(config.lowered_lean_min_deg)
         stays, _ = palm_rule(points, config.palm_lowered_threshold, lean_max_rad)
         since_ns = np.append(self._up_since_ns, _NEVER_NS)[last_rows]  # row -1 has never been up
@@ -63,7 +84,9 @@ class RaiseMemory:
         patience_s = np.where(length < config.small_hand_px, config.small_hand_patience_s, 0.0)
         raised = is_up & (stamp_ns - self._up_since_ns >= patience_s * 1e9)
         self._rose = np.where(np.append(self._rose, False)[last_rows], stays, rises)
-        return raised, measure, self._rose & ~raised
+        refusal = np.where(rises & ~is_up, Refusal.UNSURE, refusal)
+        refusal = np.where(is_up, np.where(raised, 0, Refusal.TOO_BRIEF), refusal)
+        return Verdict(raised, measure, self._rose & ~raised, refusal)
 
     def reset(self) -> None:
         """Forget all hands."""

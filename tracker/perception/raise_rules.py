@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray
+from tracker.containers import BoolArray, FloatArray, IntArray, Refusal
 
 WRIST, THUMB_TIP, MIDDLE_ROOT, MIDDLE_TIP, PINKY_TIP = 0, 4, 9, 12, 20
 
@@ -33,6 +33,24 @@ def judge_raised(
     return palm_rule(
         landmarks_px, config.palm_raised_threshold, np.radians(config.raised_lean_max_deg)
     )
+
+
+def rule_refusals(rises: BoolArray, measure: FloatArray, config: Config) -> IntArray:
+    """Why the configured rule does not call hands raised.
+
+    Args:
+        rises: Shape (H,): as from `judge_raised`, like `measure`.
+        measure: Shape (H,).
+        config: `raise_rule` and its threshold.
+
+    Returns:
+        Shape (H,): of `Refusal`; 0 where `rises`.
+    """
+    threshold, otherwise = config.palm_raised_threshold, Refusal.LEANS
+    if config.raise_rule == "image":
+        threshold, otherwise = config.hand_raised_threshold, Refusal.CLOSED
+    refusal = np.where(measure > threshold, otherwise, Refusal.NOT_UP)
+    return np.where(rises, Refusal.NO_REASON, refusal).astype(np.int64)
 
 
 def image_rule(

@@ -18,6 +18,7 @@ from tracker.containers import (
     ImageArray,
     IntArray,
     PerceptionWork,
+    Refusal,
 )
 from tracker.perception.arm_watch import LOOK_PLACES, ArmWatch, hands_of_arms
 from tracker.perception.bodies import Bodies
@@ -42,6 +43,9 @@ from tracker.perception.pose_rules import (
 #: Bodies seen longer ago than this say nothing any more: an arm goes up or down in half of it
 #: (guess).
 _BODY_MAX_AGE_S = 1.0
+
+#: A hand that is not even up for itself: the bodies' reasons come after these.
+_BY_RULE = (Refusal.NOT_UP, Refusal.LEANS, Refusal.CLOSED)
 
 _AtHead: TypeAlias = Callable[[Hands, Bodies, IntArray, FloatArray], BoolArray]
 
@@ -104,7 +108,8 @@ class SecondOpinion:
         if isinstance(self._bodies, OwnerFinder):
             patience_s = unowned_patience_s(hands, image.height, self._config)
             is_waiting = self._bodies.still_looking(hands, patience_s)
-            hands = replace(hands, raised=hands.raised & ~is_waiting)
+            refusal = np.where(hands.raised & is_waiting, Refusal.OWNER_UNKNOWN, hands.refusal)
+            hands = replace(hands, raised=hands.raised & ~is_waiting, refusal=refusal)
         self._watch_arms(image, hands, bodies[bodies.age_s == 0.0])
         at_head = partial(self._memory.judge, image.stamp_ns)
         return weigh_opinions(hands, bodies, _size(image), self._config, at_head)
@@ -179,11 +184,19 @@ def weigh_opinions(
     bodies = bodies[bodies.age_s <= _BODY_MAX_AGE_S]
     owner = find_owners(hands, bodies)
     clearance = clearance_of(hands, config.hand_head_clearance)
-    refused = at_head(hands, bodies, owner, clearance)
-    refused |= hands_below_shoulders(hands, bodies, owner, config.hand_shoulder_rise_min)
-    refused |= hands_at_rest(hands, bodies, owner) | hands_on_faces(hands, bodies, owner)
+    rise_min = config.hand_shoulder_rise_min
+    reasons = {
+        Refusal.AT_HEAD: at_head(hands, bodies, owner, clearance),
+        Refusal.BELOW_SHOULDERS: hands_below_shoulders(hands, bodies, owner, rise_min),
+        Refusal.AT_REST: hands_at_rest(hands, bodies, owner),
+        Refusal.ON_FACE: hands_on_faces(hands, bodies, owner),
+    }
+    of_body = np.select(list(reasons.values()), list(reasons), Refusal.NO_REASON)
+    refused = of_body != Refusal.NO_REASON
     vouched = hands.pending & (find_owners(hands, bodies, VOUCHING_WRIST_SHOULDERS) >= 0)
-    hands = replace(hands, raised=(hands.raised | vouched) & ~refused)
+    raised = (hands.raised | vouched) & ~refused
+    refusal = np.where(refused & ~np.isin(hands.refusal, _BY_RULE), of_body, hands.refusal)
+    hands = replace(hands, raised=raised, refusal=np.where(raised, 0, refusal))
     if config.pose_opinion != "full":
         return hands
     torso = np.full((len(hands), 2), np.nan)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tracker.containers import FloatArray, FrameResult, Tracks
+from tracker.containers import FloatArray, FrameResult, Refusal, Tracks
 from tracker.notes import NoteKind
 from tracker.report.hit_grid import HitGrid
 from tracker.report.trail import Trail
@@ -84,6 +84,7 @@ class History:
         people_dropped: Earlier people who were given up to bound memory.
         frames_processed: Images so far.
         frames_raised: Images after which some hand was up.
+        hands_not_raised: For each reason, the images in which a hand was not raised for it.
         camera_path: Rows of x_m, y_m, yaw_rad of the camera in the fixed frame.
         walls: Where scans met something.
         start_ns: Stamp of second 0, or None before the first image.
@@ -97,6 +98,7 @@ class History:
         self.frames_raised = 0
         self._notes: Counter[NoteKind] = Counter()
         self._first_notes: dict[NoteKind, str] = {}
+        self.hands_not_raised: Counter[Refusal] = Counter()
         self.camera_path = Trail(3, capacity=2048)
         self.walls = HitGrid()
         self.start_ns = start_ns
@@ -120,6 +122,7 @@ class History:
         for note in result.notes:
             self._notes[note.kind] += 1
             self._first_notes.setdefault(note.kind, note.text)
+        self.hands_not_raised.update(result.hands.refusals.keys())
         if result.sensor_pose is not None:
             x, y, yaw = result.sensor_pose
             self.camera_path.append(float(x), float(y), float(yaw))

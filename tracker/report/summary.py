@@ -30,6 +30,8 @@ def summarize(
         duration_s          sensor time covered by the images
         frames              {seen, processed, hand_raised}; seen is null where nobody counted
         notes               {first note of a kind: images that carried one of that kind}
+        hands_not_raised    {reason: images in which a hand that was found was not raised for it},
+                            the most frequent first; the reasons are those of `Refusal`
         people              one entry per confirmed customer, in the order they came:
             id              as in tracks.csv and output.mcap
             first_seen_s, last_seen_s
@@ -55,6 +57,10 @@ def summarize(
             "hand_raised": history.frames_raised,
         },
         "notes": history.notes,
+        "hands_not_raised": {
+            reason.name.lower(): images
+            for reason, images in history.hands_not_raised.most_common()
+        },
         "people": [_person(history, person) for person in history.people.values()],
         "people_dropped": history.people_dropped,
     }

@@ -1,9 +1,11 @@
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 
 from tracker.config import Config
-from tracker.containers import CameraImage, Hands, Tracks
+from tracker.containers import CameraImage, Hands, Refusal, Tracks
 from tracker.perception.drawing import draw_debug_image
 
 
@@ -130,3 +132,23 @@ def test_tiny_pictures_and_hands_outside_are_drawn_without_complaint(size):
     for found in (far, Hands.none()):
         drawn = draw_debug_image(image(*size), found, people, Config())
         assert 0 not in drawn.shape
+
+
+def test_the_nearest_hand_that_is_not_raised_says_why(written):
+    seen = hands(True, False, False)
+    larger = seen.landmarks_px.copy()
+    larger[2, 12] = larger[2, 0] - (0.0, 200.0)
+    codes = [0, Refusal.NOT_UP, Refusal.AT_HEAD]
+    draw_debug_image(image(), replace(seen, landmarks_px=larger, refusal=codes), None, Config())
+    assert [text for text in written if "not raised" in text] == ["not raised: at the head"]
+
+
+def test_hands_that_are_all_raised_need_no_reason(written):
+    draw_debug_image(image(), hands(True, True), None, Config())
+    assert not any("not raised" in text for text in written)
+
+
+def test_every_reason_fits_beside_a_hand_of_a_small_picture(written):
+    for refusal in Refusal:
+        draw_debug_image(image(320, 240), replace(hands(False), refusal=[refusal]), None, Config())
+        assert any(text.endswith(refusal.words) for text in written)

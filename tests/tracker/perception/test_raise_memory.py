@@ -1,6 +1,7 @@
 import numpy as np
 
 from tracker.config import Config
+from tracker.containers import Refusal
 from tracker.perception.landmarks import Landmarks
 from tracker.perception.raise_memory import RaiseMemory
 
@@ -92,7 +93,7 @@ def test_memories_follow_hands_that_change_rows():
     both = Landmarks.concatenate(between, up)
     memory.judge(0, both, np.array([-1, -1]), SIZE, CONFIG)
     again = Landmarks.concatenate(between, between)
-    raised, _, _ = memory.judge(PERIOD_NS, again, np.array([1, 0]), SIZE, CONFIG)
+    raised = memory.judge(PERIOD_NS, again, np.array([1, 0]), SIZE, CONFIG).raised
     assert raised.tolist() == [True, False]
 
 
@@ -109,3 +110,25 @@ def test_the_specification_s_rule_has_neither_memory_nor_patience():
     spread.points_px[0, 20, 0] += 10.0
     assert verdicts([spread, spread], config) == [True, True]
     assert verdicts([hand(1.0), spread, hand(1.0)], config) == [False, True, False]
+
+
+def reasons(hands):
+    """Of one followed hand, image after image."""
+    memory = RaiseMemory()
+    rows = [-1] + [0] * (len(hands) - 1)
+    return [
+        Refusal(memory.judge(frame * PERIOD_NS, one, np.array([row]), SIZE, CONFIG).refusal[0])
+        for frame, (one, row) in enumerate(zip(hands, rows, strict=True))
+    ]
+
+
+def test_a_hand_that_does_not_count_says_why():
+    assert reasons([hand(0.4)]) == [Refusal.NOT_UP]
+    assert reasons([hand(1.5, aside_palms=1.3)]) == [Refusal.LEANS]
+    assert reasons([hand(1.8, score=0.7)]) == [Refusal.UNSURE]
+    assert reasons([hand(1.8, palm_px=10.0)] * 4) == [*[Refusal.TOO_BRIEF] * 3, 0]
+
+
+def test_a_hand_that_comes_down_says_why():
+    assert reasons([hand(1.8), hand(0.7)]) == [0, Refusal.NOT_UP]
+    assert reasons([hand(1.8), hand(1.2, aside_palms=1.6)]) == [0, Refusal.LEANS]

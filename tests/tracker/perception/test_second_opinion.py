@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tracker.config import Config
-from tracker.containers import CameraImage, Hands, PerceptionWork
+from tracker.containers import CameraImage, Hands, PerceptionWork, Refusal
 from tracker.perception import HandDetector
 from tracker.perception.arm_watch import LOOK_PERIOD, LOOK_PLACES, ArmWatch
 from tracker.perception.bodies import Bodies
@@ -266,3 +266,50 @@ def test_the_owner_of_a_raised_hand_comes_before_other_arms(body, upright_hand):
 
 def test_a_detector_that_cannot_be_told_of_arms_is_left_alone(body):
     watched(Told(Hands.none()), body(**UP))
+
+
+def refusals_of(answer):
+    return [Refusal(code) for code in answer.refusal]
+
+
+def test_what_the_bodies_refuse_says_why(body, upright_hand):
+    at_ear = weigh(upright_hand((183, 78)), body(**PHONING), "veto")
+    assert refusals_of(at_ear) == [Refusal.AT_HEAD]
+    gesture = weigh(upright_hand((160, 115)), body(right_wrist=(160, 115)), "veto")
+    assert refusals_of(gesture) == [Refusal.BELOW_SHOULDERS]
+    in_lap = weigh(upright_hand((188, 170)), body(right_wrist=None, left_wrist=None), "veto")
+    assert refusals_of(in_lap) == [Refusal.AT_REST]
+    assert refusals_of(weigh(upright_hand((148, 70)), body(**UP), "veto")) == [0]
+
+
+def test_a_pending_hand_keeps_its_reason_until_its_owner_vouches_or_refuses(body, upright_hand):
+    brief = replace(unsure(upright_hand((148, 70))), refusal=[Refusal.TOO_BRIEF])
+    assert refusals_of(weigh(brief, Bodies.none(), "veto")) == [Refusal.TOO_BRIEF]
+    assert refusals_of(weigh(brief, body(**UP), "veto")) == [0]
+    at_ear = replace(unsure(upright_hand((183, 78))), refusal=[Refusal.TOO_BRIEF])
+    assert refusals_of(weigh(at_ear, body(**PHONING), "veto")) == [Refusal.AT_HEAD]
+
+
+def test_a_hand_that_is_not_up_for_itself_keeps_that_reason_at_the_head(body, upright_hand):
+    bent = replace(upright_hand((183, 78), raised=False), refusal=[Refusal.NOT_UP])
+    assert refusals_of(weigh(bent, body(**PHONING), "veto")) == [Refusal.NOT_UP]
+
+
+def test_a_hand_whose_owner_is_looked_for_says_so(upright_hand):
+    owners = OwnerFinder(lambda bgr, window: Bodies.none())
+    opinion = SecondOpinion(Always(upright_hand((148, 70))), owners, Config())
+    answer = opinion.find(CameraImage(0, "", np.zeros((480, 640, 3), np.uint8)))
+    assert refusals_of(answer) == [Refusal.OWNER_UNKNOWN]
+
+
+def test_owners_of_a_gray_picture_s_hands_are_looked_for_in_a_tinted_one(upright_hand):
+    looked = []
+
+    def look(bgr, window):
+        looked.append(bgr)
+        return Bodies.none()
+
+    opinion = SecondOpinion(Always(upright_hand((148, 70))), OwnerFinder(look), Config())
+    opinion.find(CameraImage(0, "", np.full((480, 640, 3), 90, np.uint8)))
+    blue, green, red = looked[0][0, 0].astype(int)
+    assert red > blue > green

@@ -1,9 +1,12 @@
 import io
 import json
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from rich.console import Console
 
+from tracker.containers import Hands, Refusal
 from tracker.errors import RecordingError
 from tracker.evaluation.episodes import EpisodeEvaluation
 from tracker.notes import Note, NoteKind
@@ -89,3 +92,15 @@ def test_the_table_has_a_line_per_raised_hand(history):
     assert "1.0 s" in lines[0]
     assert "0.40 m" in lines[0]  # two standard deviations of 0.2 m
     assert "+" in lines[1]  # still up at the end
+
+
+def test_hands_that_were_not_raised_are_counted_by_their_reason(result_of):
+    history = History()
+    for second, codes in enumerate(([Refusal.AT_HEAD, Refusal.AT_HEAD], [Refusal.LEANS, 0], [0])):
+        count = len(codes)
+        one = np.ones(count)
+        raised = [code == 0 for code in codes]
+        hands = Hands(np.zeros((count, 21, 2)), one, one, raised, one, refusal=codes)
+        history.write(replace(result_of(second * 10**9), hands=hands))
+    history.write(replace(result_of(3 * 10**9), hands=hands[[]]))
+    assert summarize(history)["hands_not_raised"] == {"at_head": 1, "leans": 1}
