@@ -331,7 +331,8 @@ class Pipeline:
     def _frame_without_transform(self, image: CameraImage) -> str | None:
         """The camera's frame, as long as that is the fixed one and its axes are the body's."""
         frame, unmoved = self._camera_frame(image), RigidTransform()
-        is_body = body_pose(unmoved, frame, self.config.camera_axes) == unmoved
+        body = self._rolled(body_pose(unmoved, frame, self.config.camera_axes))
+        is_body = body == unmoved
         return frame if self._camera_pose is None and is_body else None
 
     def _rolled(self, target_from_camera: RigidTransform) -> RigidTransform:
@@ -430,7 +431,8 @@ class Pipeline:
                 NoteKind.LASER_MOUNTING_UNKNOWN,
                 "no mounting of the laser: it is taken to be the camera's",
             )
-            return fixed_from_camera
+            x_m, y_m, yaw_rad = fixed_from_camera.planar  # level, however the camera is rolled
+            return RigidTransform.from_planar(x_m, y_m, yaw_rad)
         laser_from_camera = self._rolled(body_pose(mounting, frame, self.config.camera_axes))
         return fixed_from_camera @ laser_from_camera.inverse()
 

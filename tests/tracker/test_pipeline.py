@@ -477,3 +477,11 @@ def test_a_remark_about_an_image_becomes_a_note():
     image = CameraImage(START_NS, "camera_link", np.zeros((480, 640, 3), np.uint8), "a guess")
     result = Pipeline(Config(), SeenHands((320, 100))).process(image)
     assert "a guess" in [note.text for note in result.notes]
+
+
+def test_a_laser_of_unknown_mounting_is_level_beside_a_camera_that_hangs_upside_down():
+    config = Config(camera_roll_deg=180.0, transform_wait_s=0.0)
+    pipeline = Pipeline(config, SeenHands())
+    (result,) = play(pipeline, 1, scan=lambda stamp_ns: person_scan(stamp_ns, 2.0, 1.0))
+    assert result.measurements.values[:, 0] == pytest.approx([np.arctan2(1.0, 2.0)], abs=0.05)
+    assert result.frame_id is None  # the camera's own frame is upside down
