@@ -56,7 +56,7 @@ class Refusal(IntEnum):
 
 _WORDS = {
     Refusal.NO_REASON: "not up",
-    Refusal.NOT_UP: "fingers not up",
+    Refusal.NOT_UP: "fingers not stretched up",
     Refusal.LEANS: "leans aside",
     Refusal.CLOSED: "fingers not spread",
     Refusal.UNSURE: "unsure hand",

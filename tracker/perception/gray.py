@@ -18,8 +18,8 @@ TINT = (0.8, 0.75, 1.45)
 #: Channels of a gray picture differ by so many gray levels at most, after JPEG (guess).
 _GRAY_MAX = 6
 #: Compared at every so many rows and columns.
-_STEP = (16, 4)
-_TINTED = np.clip(np.outer(np.arange(256), TINT).round(), 0, 255).astype(np.uint8)[None]
+_STEP = (16, 8)
+_TINTED = np.clip(np.outer(np.arange(256), TINT).round(), 0, 255).astype(np.uint8)[:, None]
 
 
 def tint_gray(bgr: ImageArray) -> ImageArray:
@@ -28,10 +28,13 @@ def tint_gray(bgr: ImageArray) -> ImageArray:
     Args:
         bgr: Shape (height, width, 3).
     """
-    return np.asarray(cv2.LUT(bgr, _TINTED), dtype=np.uint8) if is_gray(bgr) else bgr
+    if not is_gray(bgr):
+        return bgr
+    return np.asarray(cv2.applyColorMap(bgr[:, :, 1], _TINTED), dtype=np.uint8)
 
 
 def is_gray(bgr: ImageArray) -> bool:
     """Whether a picture shows brightness alone."""
     sample = bgr[:: _STEP[0], :: _STEP[1]].astype(np.int16)
-    return bool(np.ptp(sample, axis=-1).max(initial=0) <= _GRAY_MAX)
+    blue, green, red = (sample[:, :, channel] for channel in range(3))
+    return all(np.abs(other - green).max(initial=0) <= _GRAY_MAX for other in (blue, red))
