@@ -17,6 +17,7 @@ from tracker.containers import (
     Truth,
 )
 from tracker.errors import ClockError, ShapeError
+from tracker.tracking import PersonTracker
 
 
 def hands(count):
@@ -305,3 +306,9 @@ def test_appearances_of_different_lengths_cannot_be_joined():
     )
     with pytest.raises(ShapeError, match=r"\[2, 3\]"):
         Measurements.concatenate(two, three)
+
+
+@pytest.mark.parametrize("std", [2e154, 1e200, 1e308, float("inf")])
+def test_a_spread_whose_square_overflows_is_no_warning(std):
+    wide = Measurements.polar([0.1], [2.0], std, std, (0.0, 0.0, 0.0))
+    assert len(PersonTracker().step(0, wide)) == 0

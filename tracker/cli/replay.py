@@ -92,10 +92,14 @@ def replay_command(
         tf=tf_topic,
         tf_static=tf_static_topic,
     )
+    viewer, said = None, ""
     with ExitStack() as stack:
         if view or save_view is not None:
             viewer = stack.enter_context(RerunView(live=view, save=save_view))
             watchers.append(viewer.watch)
+            said = viewer.trouble
+            if said:
+                complain(f"--view: {viewer.trouble}")
         progress = stack.enter_context(bar(errors, "Replaying"))
         result = replay(
             source,
@@ -106,6 +110,8 @@ def replay_command(
             progress=progress,
             watchers=watchers,
         )
+    if viewer is not None and viewer.trouble != said:  # while it was watched
+        complain(f"--view: {viewer.trouble}")
     files = (*result.files, *([save_view] if save_view is not None else []))
     if report is not None and watched is not None:
         page = watched.page(
@@ -129,5 +135,6 @@ def replay_command(
         errors.print(f"note: {one_line(remark)}", highlight=False, markup=False, soft_wrap=True)
     for problem in result.problems:
         complain(problem)
-    if result.problems:
+    has_trouble = viewer is not None and viewer.trouble
+    if result.problems or has_trouble:
         sys.exit(1)

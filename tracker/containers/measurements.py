@@ -134,7 +134,8 @@ class Measurements:
         fill("range_m", distance, range_m)
         fill("bearing_std_rad", covariance[:, 0, 0], bearing_std_rad)
         fill("range_std_m", spread, range_std_m)
-        covariance *= covariance
+        with np.errstate(over="ignore"):  # an infinite variance says nothing, and is passed over
+            covariance *= covariance
         np.copyto(spread, 1.0, where=np.isnan(distance))
         measured = trusted(
             Measurements,

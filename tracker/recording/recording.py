@@ -235,7 +235,8 @@ class Recording(Closing):
             before, after = getattr(asked, name), getattr(found, name)
             if before != after:
                 self.notes.append(
-                    f"{self.path}: nothing on {one_line(before)}; {one_line(after)} is read instead."
+                    f"{self.path}: nothing on {one_line(before)}; "
+                    f"{one_line(after)} is read instead."
                 )
         return found
 

@@ -12,6 +12,8 @@ The only timeline is `stamp`, the sensors' own time.
 from __future__ import annotations
 
 from pathlib import Path
+from socket import socket
+from time import sleep
 from typing import Any
 
 import cv2
@@ -31,6 +33,8 @@ _CIRCLE = np.stack(
 )
 _EYE_M, _LOOKED_AT_M = (1.5, 0.0, 9.0), (1.5, 0.0, 0.0)  # from above, at what is ahead
 _NOBODY = "nobody"
+_VIEWER = ("127.0.0.1", 9876)  # Rerun's own port
+_SETTLING_S, _FLUSH_S = 1.5, 10.0
 
 
 class RerunView(GrowingOutput):
@@ -39,6 +43,9 @@ class RerunView(GrowingOutput):
     Args:
         live: Open the viewer, and stream to it.
         save: The .rrd file to write, replaced if it exists; None for none.
+
+    Attributes:
+        trouble: Why nobody can watch live, in a sentence; empty where somebody can.
 
     Raises:
         ConfigError: Rerun is not installed.
@@ -58,14 +65,16 @@ class RerunView(GrowingOutput):
         self._stream = rerun.RecordingStream("raised_hand_tracker")
         self._stream.set_log_time_enabled(False)
         self._stream.set_log_tick_enabled(False)
+        self.trouble = ""
         sinks = []
         if save is not None:
             self._place = GrowingFile(save)
             sinks.append(_file_sink(save, self._place.path))
-        if live:
-            rerun.spawn(connect=False, hide_welcome_screen=True)
+        if live and self._start_viewer():
             sinks.append(rerun.GrpcSink())
-        self._stream.set_sinks(*sinks, default_blueprint=_blueprint())
+        self._is_shown = bool(sinks)
+        if sinks:  # without any, Rerun would keep it all in memory
+            self._stream.set_sinks(*sinks, default_blueprint=_blueprint())
         self._stream.log("map", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         line = rerun.SeriesLines(
             colors=_rgba(LIT), names="hand_raised", widths=3, interpolation_mode="StepAfter"
@@ -83,6 +92,8 @@ class RerunView(GrowingOutput):
             result: What the pipeline made of it.
             busy_s: Not shown.
         """
+        if not self._is_shown:
+            return
         stamp = np.datetime64(result.stamp_ns, "ns")
         self._stream.set_time(_TIMELINE, timestamp=stamp)
         self._show_camera(image, result.hands)
@@ -103,8 +114,29 @@ class RerunView(GrowingOutput):
 
     def break_off(self) -> None:
         """As `GrowingOutput.break_off`."""
-        self._stream.flush()
+        try:
+            self._stream.flush(timeout_sec=_FLUSH_S)
+        except RuntimeError as error:  # the viewer was closed, or hangs
+            self.trouble = f"the viewer did not get everything ({error})."
         self._stream.disconnect()
+
+    def _start_viewer(self) -> bool:
+        """Whether there is one, which has not given up right away for want of a screen."""
+        try:
+            self._rerun.spawn(connect=False, recording=self._stream, hide_welcome_screen=True)
+        except RuntimeError as error:
+            self.trouble = f"the viewer cannot start ({error}); see to it, or use --save-view."
+            return False
+        for _ in range(3):
+            sleep(_SETTLING_S / 3)
+            with socket() as probe:
+                if probe.connect_ex(_VIEWER) != 0:
+                    self.trouble = (
+                        "the viewer cannot start: it needs a screen (DISPLAY or WAYLAND_DISPLAY); "
+                        "use --save-view, and open the file where there is one."
+                    )
+                    return False
+        return True
 
     def _show_camera(self, image: CameraImage, hands: Hands) -> None:
         rerun, log = self._rerun, self._stream.log

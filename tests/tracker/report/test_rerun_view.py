@@ -133,3 +133,36 @@ def test_without_rerun_the_extra_is_named(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "rerun", None)
     with pytest.raises(ConfigError, match=r"pip install 'raised-hand-tracker\[view\]'"):
         RerunView(save=tmp_path / "view.rrd")
+
+
+def test_a_viewer_that_cannot_start_is_said_and_nothing_waits_for_it(
+    rerun, tmp_path, some, monkeypatch
+):
+    monkeypatch.setattr(rerun, "spawn", lambda **_: None)  # it gives up where there is no screen
+    monkeypatch.setattr("tracker.report.rerun_view._VIEWER", ("127.0.0.1", 9))
+    monkeypatch.setattr("tracker.report.rerun_view._SETTLING_S", 0.0)
+    with RerunView(live=True, save=tmp_path / "view.rrd") as view:
+        view.watch(an_image(some[0]), some[0])
+    assert "cannot start: it needs a screen" in view.trouble
+    assert (tmp_path / "view.rrd").stat().st_size > 1000
+    with RerunView(live=True) as view:
+        view.watch(an_image(some[0]), some[0])
+    assert view.trouble
+
+
+def test_a_viewer_that_was_closed_ends_the_waiting(rerun, tmp_path, some, monkeypatch):
+    def fail(*_, **__):
+        raise RuntimeError("unable to connect")
+
+    with RerunView(save=tmp_path / "view.rrd") as view:
+        view.watch(an_image(some[0]), some[0])
+        monkeypatch.setattr(type(view._stream), "flush", fail)
+    assert "did not get everything (unable to connect)" in view.trouble
+
+
+def test_the_viewer_is_started_for_the_stream_that_it_shows(rerun, monkeypatch):
+    asked = []
+    monkeypatch.setattr(rerun, "spawn", lambda **options: asked.append(options))
+    monkeypatch.setattr("tracker.report.rerun_view._SETTLING_S", 0.0)
+    with RerunView(live=True) as view:
+        assert asked[0]["recording"] is view._stream  # without one Rerun does nothing at all

@@ -59,7 +59,7 @@ def folder() -> Path | None:
     return Path(place) / f"compiled-{content.hexdigest()}"
 
 
-class _BySources(_CacheLocator):
+class _BySources(_CacheLocator):  # type: ignore[misc]  # numba has no types
     def __init__(self, file: str) -> None:
         self._file = Path(file)
 
@@ -77,11 +77,11 @@ class _BySources(_CacheLocator):
         return cls(file)
 
 
-class _Files(CompileResultCacheImpl):
+class _Files(CompileResultCacheImpl):  # type: ignore[misc]
     _locator_classes = (_BySources,)
 
 
-class _Cache(FunctionCache):
+class _Cache(FunctionCache):  # type: ignore[misc]
     """Numba's, where a file that cannot be read or written is no reason to stop."""
 
     _impl_class = _Files
