@@ -66,9 +66,10 @@ def _outcome(body: Callable[[], None]) -> tuple[int, str]:
     except BrokenPipeError:  # `| head` has seen enough
         return 1, ""
     except OSError as error:
+        if error.errno is None:  # of a library that cannot be loaded, for one
+            return 1, str(error)
         place = error.filename if error.filename is not None else "standard output or a file"
-        status = 2 if error.errno == errno.ENAMETOOLONG else 1
-        return status, f"{place}: {error.strerror or error}."
+        return 2 if error.errno == errno.ENAMETOOLONG else 1, f"{place}: {error.strerror}."
     return 0, ""
 
 

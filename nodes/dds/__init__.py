@@ -15,7 +15,7 @@ try:
 except ModuleNotFoundError as missing:
     raise ConfigError(
         "Cyclone DDS is not installed; needed is the extra `dds`: "
-        "pip install 'raised-hand-tracker[dds]'."
+        "pip install '.[dds]' in the project's folder."
     ) from missing
 
 from nodes.dds.endpoints import Publisher

@@ -80,7 +80,7 @@ class RawTopic(Topic):  # type: ignore[misc]  # cyclonedds has no types
                 return
         raise ConfigError(
             "The installed cyclonedds is not the one this was made for; needed is 11.0.1: "
-            "pip install 'raised-hand-tracker[dds]'."
+            "pip install '.[dds]' in the project's folder."
         )
 
 

@@ -21,7 +21,7 @@ def test_without_its_extra_the_command_names_it_in_one_line():
     assert ended.returncode == 2
     assert ended.stdout == ""
     [line] = ended.stderr.splitlines()
-    assert "pip install 'raised-hand-tracker[dds]'" in line
+    assert "pip install '.[dds]'" in line
 
 
 NODE = "/cafe/hand_detector"

@@ -143,5 +143,5 @@ def _check_parquet(out: Path | None) -> None:
         raise ConfigError("--format parquet: needs a folder for the file, --out FOLDER.")
     if find_spec("pyarrow") is None:
         raise ConfigError(
-            "--format parquet: needs pyarrow: pip install 'raised-hand-tracker[cluster]'."
+            "--format parquet: needs pyarrow: pip install '.[cluster]' in the project's folder."
         )

@@ -36,7 +36,8 @@ def dask_cluster(address: str, *, patience_s: float = 30.0) -> Iterator[Executor
         from distributed.comm import get_address_host_port
     except ModuleNotFoundError as error:
         raise ConfigError(
-            f"{address} needs Dask: pip install '{_PACKAGE}[cluster]', here and on its workers."
+            f"{address} needs Dask: pip install '.[cluster]' in the project's folder, here and "
+            "on its workers."
         ) from error
     place = address.replace("dask://", "tcp://", 1)
     try:  # before there is a client, whose remains may block the next one

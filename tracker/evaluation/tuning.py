@@ -348,7 +348,7 @@ def _optuna() -> ModuleType:
     except ImportError as error:
         raise ConfigError(
             "Tuning needs Optuna, which is not installed; run "
-            "`pip install 'raised-hand-tracker[tune]'`."
+            "`pip install '.[tune]'` in the project's folder."
         ) from error
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna

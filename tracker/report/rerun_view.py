@@ -58,7 +58,7 @@ class RerunView(GrowingOutput):
         except ImportError as error:
             raise ConfigError(
                 "The view needs Rerun, which is not here: pip install "
-                "'raised-hand-tracker[view]', with Python 3.11 or newer and numpy 2."
+                "'.[view]' in the project's folder, with Python 3.11 or newer and numpy 2."
             ) from error
         self._rerun = rerun
         self._place: GrowingFile | None = None

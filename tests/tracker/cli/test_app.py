@@ -329,4 +329,4 @@ def test_a_view_without_rerun_is_one_line_and_status_2(
     monkeypatch.setitem(sys.modules, "rerun", None)
     status, _, error = run("replay", blank_recording, *option)
     assert status == 2
-    assert "pip install 'raised-hand-tracker[view]'" in complaint(error)
+    assert "pip install '.[view]'" in complaint(error)

@@ -131,7 +131,7 @@ def test_a_place_that_cannot_be_written_is_named(rerun, tmp_path):
 
 def test_without_rerun_the_extra_is_named(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "rerun", None)
-    with pytest.raises(ConfigError, match=r"pip install 'raised-hand-tracker\[view\]'"):
+    with pytest.raises(ConfigError, match=r"pip install '.\[view\]'"):
         RerunView(save=tmp_path / "view.rrd")
 
 
