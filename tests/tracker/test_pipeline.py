@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -485,3 +487,50 @@ def test_a_laser_of_unknown_mounting_is_level_beside_a_camera_that_hangs_upside_
     (result,) = play(pipeline, 1, scan=lambda stamp_ns: person_scan(stamp_ns, 2.0, 1.0))
     assert result.measurements.values[:, 0] == pytest.approx([np.arctan2(1.0, 2.0)], abs=0.05)
     assert result.frame_id is None  # the camera's own frame is upside down
+
+
+@pytest.mark.parametrize(
+    "roll_pitch", [(np.pi, 0.0), (0.0, np.pi)], ids=["rolled by a half turn", "pitched by one"]
+)
+def test_a_scanner_upside_down_shows_people_on_their_own_side(roll_pitch):
+    pipeline = Pipeline(Config(), SeenHands((320 - 460 * 0.3, 100)))
+    pipeline.add_transform(static("map", "camera_link"))
+    hung = RigidTransform((0.0, 0.0, 1.0), euler_to_quaternion(*roll_pitch, 0.4))
+    pipeline.add_transform(static("map", "laser", hung))
+    x, y, _ = hung.inverse().rotate([2.0, 0.6, 0.0])  # somebody at (2, 0.6), as the laser has it
+    result = play(pipeline, 4, scan=lambda stamp_ns: person_scan(stamp_ns, x, y))[-1]
+    assert result.tracks.mean[0, :2] == pytest.approx([2.0, 0.6], abs=0.12)
+    assert len(result.measurements) == 1
+
+
+def test_beams_are_turned_by_the_robot_s_motion_within_the_scan():
+    """The robot turns by 2 rad/s; the scan takes 0.1 s and passes the person in its middle."""
+    rate_radps, increment_s = 2.0, 0.1 / 720
+    pipeline = Pipeline(Config(), SeenHands())
+    pipeline.add_transform(static("map", "camera_link"))
+    for number in range(-1, 20):
+        stamp_ns = START_NS + number * PERIOD_NS // 2
+        pose = RigidTransform(
+            quaternion_xyzw=euler_to_quaternion(0, 0, rate_radps * 0.05 * number)
+        )
+        pipeline.add_transform(StampedTransform(stamp_ns, "map", "laser", pose))
+    half_turn = rate_radps * 0.05  # when the scan is half done
+    x, y = 2.0 * np.cos(np.pi), 2.0 * np.sin(np.pi)
+    seen = person_scan(START_NS, x, y)
+    scan = replace(seen, time_increment_s=increment_s)
+    for each, heading in ((seen, np.pi), (scan, np.pi + half_turn)):
+        pipeline.room.forget_scans_after(0)
+        pipeline.add_scan(each)
+        located = pipeline.process(image_at(START_NS)).scan
+        nearest = located.xy_m[np.nanargmin(located.range_m)]
+        assert np.hypot(*(nearest - 1.8 * np.array([np.cos(heading), np.sin(heading)]))) < 0.03
+
+
+def test_a_scanner_of_millimeters_is_used_and_said(located):
+    def in_millimeters(stamp_ns):
+        scan = person_scan(stamp_ns)
+        return replace(scan, ranges_m=1000 * scan.ranges_m, range_max_m=12_000.0)
+
+    results = play(located, 4, scan=in_millimeters)
+    assert results[-1].customer_pose.position_m == pytest.approx((2.0, 0.0, 0.0), abs=0.15)
+    assert {note.kind for note in results[-1].notes} == {NoteKind.SCAN_IN_MILLIMETERS}

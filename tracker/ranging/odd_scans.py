@@ -74,6 +74,8 @@ def _returns(ranges: FloatArray) -> FloatArray:
 
 
 def _is_in_millimeters(ranges: FloatArray) -> bool:
+    if not (np.isfinite(ranges) & (ranges > _METERS_MAX)).any():
+        return False  # almost always
     found = _returns(ranges)
     if len(found) < 3:
         return False
