@@ -36,7 +36,7 @@ def milliseconds_per_scan(path: Path, config: Config) -> tuple[float, float]:
         located = locate_scan(scan, RigidTransform())
         people = scan_people(located, config)
         middle = time.perf_counter()
-        background.observe(located, people.xy_m, config.background_after_s)
+        background.observe(located, people, config.background_after_s)
         background.holds(people.xy_m)
         finding.append(middle - begin)
         learning.append(time.perf_counter() - middle)

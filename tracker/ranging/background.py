@@ -13,9 +13,13 @@ import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray, LocatedScan
 from tracker.ranging.beams import beam_index
+from tracker.ranging.people import PersonClusters
 
 #: What moves less than this stands still: noise of a cluster's middle and of the robot's pose.
 STILL_M = 0.12
+#: ... and something slim that stands alone is furniture after this: who stands shows both legs, or
+#: one for a moment (guess).
+SLIM_AFTER_S = 3.0
 #: A beam that ends this far behind a place has passed through it ...
 _THROUGH_M = 0.3
 #: ... and so many scans in a row are no drop-outs.
@@ -39,37 +43,42 @@ class Background:
         """Forget everything."""
         self._places, self._stamp_ns = _Places.none(), None
 
-    def observe(self, scan: LocatedScan, clusters_xy_m: FloatArray, after_s: float) -> None:
+    def observe(self, scan: LocatedScan, clusters: PersonClusters, after_s: float) -> None:
         """Learn from one scan, and forget what it has looked through.
 
         Args:
             scan: The scan, in the fixed frame.
-            clusters_xy_m: Shape (C, 2): the person-sized things found in it.
-            after_s: What has stood still for so long is background.
+            clusters: The person-sized things found in it.
+            after_s: What has stood still for so long is background; what is slim and alone is so
+                sooner, by `SLIM_AFTER_S`.
         """
         lapse_s = 0.0
         if self._stamp_ns is not None:
             lapse_s = float(np.clip((scan.stamp_ns - self._stamp_ns) / 1e9, 0.0, _GAP_MAX_S))
         self._stamp_ns = scan.stamp_ns
         places = self._places
-        distance = _distances(places.xy_m, clusters_xy_m)
+        distance = _distances(places.xy_m, clusters.xy_m)
         is_there = distance.min(axis=1, initial=np.inf) < STILL_M
         rows = np.flatnonzero(is_there)
         seen = places.sightings + is_there
         gain = np.maximum(1.0 / np.maximum(seen[rows], 1), _GAIN_MIN)[:, None]
         xy = places.xy_m.copy()
+        needs_s = np.full(len(places), after_s)
         if len(rows):
-            xy[rows] += gain * (clusters_xy_m[distance[rows].argmin(axis=1)] - xy[rows])
+            cluster = distance[rows].argmin(axis=1)
+            xy[rows] += gain * (clusters.xy_m[cluster] - xy[rows])
+            needs_s[rows[clusters.is_slim[cluster]]] = min(after_s, SLIM_AFTER_S)
         stood_s = places.stood_s + lapse_s * is_there
         is_through = ~is_there & _is_looked_through(places.xy_m, scan)
         through = np.where(is_through, places.through + 1, places.through * ~is_there)
         seen_ns = np.where(is_there, scan.stamp_ns, places.seen_ns)
-        places = _Places(xy, stood_s, seen, seen_ns, through, stood_s >= after_s)
+        is_background = places.is_background | (stood_s >= needs_s)
+        places = _Places(xy, stood_s, seen, seen_ns, through, is_background)
         forgotten_ns = scan.stamp_ns - round(after_s * 1e9)
         places = places[
             (through < _THROUGH_SCANS) & (places.is_background | (seen_ns >= forgotten_ns))
         ]
-        new = clusters_xy_m[distance.min(axis=0, initial=np.inf) >= STILL_M]
+        new = clusters.xy_m[distance.min(axis=0, initial=np.inf) >= STILL_M]
         places = places.append(_Places.begin(new, scan.stamp_ns))
         if len(places) > _PLACES_MAX:
             order = np.argsort(places.seen_ns, kind="stable")

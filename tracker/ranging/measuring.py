@@ -57,7 +57,7 @@ def measure_people(
     is_background = np.zeros(len(people), dtype=bool)
     if background is not None and scan is not None:
         if sustain:
-            background.observe(scan, people.xy_m, config.background_after_s)
+            background.observe(scan, people, config.background_after_s)
         is_background = background.holds(people.xy_m)
     if config.ranging == "spec":
         claimed = np.full(len(hands), -1, dtype=np.int64)

@@ -45,6 +45,11 @@ class PersonClusters:
     def __len__(self) -> int:
         return len(self.xy_m)
 
+    @property
+    def is_slim(self) -> BoolArray:
+        """Shape (C,): one thing alone, thinner than a trouser leg, as of chairs and tables."""
+        return (self.legs == 1) & (self.width_m < TROUSERS_WIDTH_MIN_M)
+
     @staticmethod
     def none() -> PersonClusters:
         """Nobody."""

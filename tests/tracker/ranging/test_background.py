@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tracker import Config
-from tracker.ranging import Background, scan_people
+from tracker.ranging import Background, PersonClusters, scan_people
 
 PERIOD_NS = 100_000_000
 AFTER_S = 2.0
@@ -13,10 +13,10 @@ CHAIR = (2.0, 0.5)
 def watch(cast):
     """Return a function that shows scans of circles to a background, and gives the next stamp."""
 
-    def show(background, circles, scans, start=0):
+    def show(background, circles, scans, start=0, after_s=AFTER_S):
         for number in range(start, start + scans):
             scan = cast(circles, stamp_ns=number * PERIOD_NS)
-            background.observe(scan, scan_people(scan, Config()).xy_m, AFTER_S)
+            background.observe(scan, scan_people(scan, Config()), after_s)
         return start + scans
 
     return show
@@ -56,6 +56,20 @@ def test_what_is_hidden_stays_background(watch):
     number = watch(background, [(*CHAIR, 0.07)], 30)
     watch(background, [(1.0, 0.25, 0.2)], 50, number)
     assert holds(background, CHAIR) == [True]
+
+
+def test_something_slim_that_stands_alone_and_still_is_background_sooner(watch):
+    background, post, trousers = Background(), (1.5, 0.5, 0.03), (1.5, -0.5, 0.07)
+    number = watch(background, [post, trousers], 30, after_s=30.0)
+    assert holds(background, post[:2], trousers[:2]) == [False, False]
+    number = watch(background, [post, trousers], 2, number, after_s=30.0)
+    assert holds(background, post[:2], trousers[:2]) == [True, False]
+
+
+def test_two_slim_legs_are_no_background_sooner(watch):
+    background = Background()
+    watch(background, [(1.5, 0.4, 0.03), (1.5, 0.6, 0.03)], 40, after_s=30.0)
+    assert holds(background, (1.54, 0.5)) == [False]
 
 
 def test_a_customer_who_stands_still_never_becomes_background(watch):
@@ -99,5 +113,7 @@ def test_memory_is_bounded(cast):
     background = Background()
     rng = np.random.default_rng(1)
     for _ in range(20):
-        background.observe(cast([]), rng.uniform(-7.0, 7.0, (200, 2)), AFTER_S)
+        legs = np.full(200, 2)
+        people = PersonClusters(rng.uniform(-7.0, 7.0, (200, 2)), np.full(200, 0.3), legs)
+        background.observe(cast([]), people, AFTER_S)
     assert len(background._places) <= 512

@@ -6,7 +6,7 @@ import pytest
 from tracker import Config, Hands
 from tracker.camera import CameraModel
 from tracker.geometry import RigidTransform
-from tracker.ranging import Background, measure_people
+from tracker.ranging import Background, PersonClusters, measure_people
 
 CAMERA = CameraModel(460.0, 460.0, 320.0, 240.0)
 AT_ORIGIN = RigidTransform()
@@ -128,12 +128,17 @@ def test_the_scan_s_covariance_is_round_whatever_the_range(cast, legs):
     assert np.sqrt(found.covariance[0, 1, 1]) == pytest.approx(0.1)
 
 
+def clusters_at(points):
+    count = len(points)
+    return PersonClusters(np.array(points, float), np.full(count, 0.3), np.full(count, 2))
+
+
 def still_background(scan, *points):
     """A background that has seen things stand at these points for longer than a minute."""
     background = Background()
     for number in range(700):
         later = replace(scan, stamp_ns=number * 100_000_000)
-        background.observe(later, np.array(points, float), 30.0)
+        background.observe(later, clusters_at(points), 30.0)
     return background
 
 
