@@ -20,7 +20,7 @@ from nodes.link import Link
 from nodes.outputs import HasSubscribers, Publish, publish_answer, publish_nobody, publish_views
 from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
 from nodes.work_budget import WorkBudget
-from tracker.config import Config
+from tracker.config import NODE_NAME, Config
 from tracker.containers import CameraImage, FrameResult, Scan
 from tracker.errors import TrackerError
 from tracker.messages import Encoded, decode
@@ -63,6 +63,7 @@ class NodeCore:
         topic_names: Where each input is listened to, for words; by default the unmapped names.
         links: What the wire knows of who publishes the inputs; asked for every report.
         steady_ns: A clock that never jumps.
+        node_name: Namespace and name, for /diagnostics.
 
     Raises:
         ModelFileError: The hand models are not there.
@@ -81,6 +82,7 @@ class NodeCore:
         topic_names: Mapping[Input, str] | None = None,
         links: Callable[[], Mapping[Input, Link]] = dict,
         steady_ns: Callable[[], int] = time.monotonic_ns,
+        node_name: str = NODE_NAME,
     ) -> None:
         self._publish, self._has_subscribers = publish, has_subscribers
         self._log, self._now_ns, self._steady_ns = log, now_ns, steady_ns
@@ -98,6 +100,7 @@ class NodeCore:
         self._budget = WorkBudget()
         self._began_ns = steady_ns()
         self._is_enabled = True
+        self._node_name = node_name.lstrip("/")
         self._last: FrameResult | None = None
         self._shown_in: str | None = None
         self._worker = threading.Thread(target=self._work, name="hand_detector", daemon=True)
@@ -112,6 +115,11 @@ class NodeCore:
     def is_enabled(self) -> bool:
         """Whether images are processed."""
         return self._is_enabled
+
+    @property
+    def is_hand_up(self) -> bool:
+        """Whether the last that was said is that a hand is up."""
+        return self._last is not None and self._last.hand_raised
 
     @property
     def is_alive(self) -> bool:
@@ -153,6 +161,8 @@ class NodeCore:
             What happened, in words.
         """
         was_enabled, self._is_enabled = self._is_enabled, is_enabled
+        if is_enabled and not was_enabled:
+            self._diagnostics.listen()
         if was_enabled and not is_enabled:
             self._inbox.order(self._forget_everybody)
         words = "enabled" if is_enabled else "disabled"
@@ -202,7 +212,8 @@ class NodeCore:
             for status in statuses:
                 if status.level >= WARN and status.is_news:
                     self._faults.add(status.name, status.message)
-        self._publish(Output.DIAGNOSTICS, encode_statuses(statuses, max(self._now_ns(), 0)))
+        report = encode_statuses(statuses, max(self._now_ns(), 0), self._node_name)
+        self._publish(Output.DIAGNOSTICS, report)
         self._inbox.wake()  # silence brings nothing that would
 
     def _receive_image(self, message: Encoded) -> None:
@@ -234,7 +245,7 @@ class NodeCore:
             if was_busy:
                 self._inbox.wake()
             self._mind_silence()
-        if self._last is not None and self._last.hand_raised:
+        if self.is_hand_up:
             self._forget_everybody()
 
     def _backlog(self, was_busy: bool) -> int:

@@ -99,6 +99,7 @@ class DdsHandDetector:
                 item: self._node.names.resolve(topic.name) for item, topic in inputs.items()
             },
             links=links.report,
+            node_name=self._node.names.full_node_name,
         )
         if use_sim_time:
             self._node.subscribe("/clock", _CLOCK_TYPE, self._take_clock, CLOCK)

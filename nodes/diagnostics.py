@@ -17,7 +17,7 @@ from nodes.image_silence import patience_s
 from nodes.link import Link
 from nodes.topics import DIAGNOSTICS_TYPE, Input
 from tracker.clock_offset import ClockOffset
-from tracker.config import NODE_NAME, Config
+from tracker.config import Config
 from tracker.containers import FrameResult, PerceptionWork
 from tracker.messages import Encoded
 from tracker.messages.encode import header
@@ -96,9 +96,15 @@ class Diagnostics:
         self._scan_clock = ClockOffset()
         self._processed = 0
         self._last_frame_ns: int | None = None
+        self._listening_ns: int | None = None
         self._located_ns: int | None = None
         self._links: Mapping[Input, Link] = {}
         self.resets = 0
+
+    def listen(self) -> None:
+        """Nothing was listened to, and is from now on: silence begins here."""
+        with self._lock:
+            self._listening_ns = self._steady_ns()
 
     def heard(self, item: Input) -> None:
         """Something has come."""
@@ -174,14 +180,18 @@ class Diagnostics:
             counts |= {f"{i.value} malformed": seen.malformed for i, seen in self._inputs.items()}
             self._reports.append((self._steady_ns(), counts))
             return [
-                *(self._input_status(item) for item in _WATCHED),
+                *(self._input_status(item, is_enabled) for item in _WATCHED),
                 self._processing_status(config, detector, is_enabled),
                 self._customers_status(config, is_enabled),
             ]
 
-    def _input_status(self, item: Input) -> Status:
+    def _input_status(self, item: Input, is_enabled: bool) -> Status:
         seen = self._inputs[item]
         level, message = self._judge(item)
+        if level != OK and not is_enabled:
+            level, message = OK, "disabled"
+        elif level != OK and self._is_settling():
+            level, message = OK, "awaited"
         malformed = self._increase(f"{item.value} malformed")
         is_fault = level == OK and malformed > 0
         if is_fault:
@@ -287,7 +297,7 @@ class Diagnostics:
             return Status("customers", OK, "nobody is reported: disabled")
         if silence_s >= patience_s(config):
             why = f"nobody is reported: no image was processed for {silence_s:.1f} s"
-            return Status("customers", WARN, why)
+            return Status("customers", OK if self._is_settling() else WARN, why)
         tracks = self._last.tracks
         refusals = self._last.hands.refusals.most_common()
         confirmed, raised = int(tracks.confirmed.sum()), int(tracks.raised.sum())
@@ -306,6 +316,9 @@ class Diagnostics:
             },
         )
 
+    def _is_settling(self) -> bool:
+        return self._listening_ns is not None and self._since(self._listening_ns) < SILENT_S
+
     def _since(self, then_ns: int) -> float:
         return (self._steady_ns() - then_ns) / 1e9
 
@@ -317,15 +330,21 @@ class Diagnostics:
         return self._increase(name) / elapsed_s if elapsed_s > 0 else 0.0
 
 
-def encode_statuses(statuses: list[Status], stamp_ns: int) -> Encoded:
-    """A diagnostic_msgs/DiagnosticArray."""
+def encode_statuses(statuses: list[Status], stamp_ns: int, node_name: str) -> Encoded:
+    """A diagnostic_msgs/DiagnosticArray.
+
+    Args:
+        statuses: The lines of the report.
+        stamp_ns: On the node's clock.
+        node_name: With its namespace, as `robot1/hand_detector`: two robots report on one topic.
+    """
     lines = [
         build(
             "diagnostic_msgs/msg/DiagnosticStatus",
             level=status.level,
-            name=f"{NODE_NAME}: {status.name}",
+            name=f"{node_name}: {status.name}",
             message=status.message,
-            hardware_id=NODE_NAME,
+            hardware_id=node_name,
             values=[
                 build("diagnostic_msgs/msg/KeyValue", key=key, value=str(value))
                 for key, value in status.values.items()

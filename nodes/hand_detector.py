@@ -6,41 +6,65 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from typing import Any
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from nodes.ros_wiring import RosWiring, declare_parameters
+from nodes.ros_parameters import RosParameters
+from nodes.ros_wiring import RosWiring
 from tracker.config import NODE_NAME
 from tracker.errors import ConfigError, TrackerError
 from tracker.program import print_version
 from tracker.tracking.ready import compile_tracker
 
+#: What makes names that are no parameters known.
+FROM_OVERRIDES = {"automatically_declare_parameters_from_overrides": True}
+
 
 class HandDetector(Node):
     """Who raises a hand, and where; see docs/ros.md for topics, services and parameters.
+
+    It may live in a program of your own, beside other nodes; `destroy_node` ends it in order.
+
+    Args:
+        node_name: Its name, unless a remapping gives another one.
+        options: As of every rclpy node: `namespace`, `context`, `parameter_overrides`, ...
 
     Raises:
         ConfigError: A parameter is unknown or out of range.
         ModelFileError: The hand models are not there.
     """
 
-    def __init__(self) -> None:
-        super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True)
+    def __init__(self, node_name: str = NODE_NAME, **options: Any) -> None:
+        super().__init__(node_name, **options | FROM_OVERRIDES)
         compile_tracker(self.get_logger().info)
-        self._wiring = RosWiring(self, declare_parameters(self))
+        self._wiring: RosWiring | None = None
+        try:
+            self._wiring = RosWiring(self, RosParameters(self))
+        except TrackerError:
+            super().destroy_node()
+            raise
         self._wiring.listen()
 
     @property
     def is_alive(self) -> bool:
         """Whether the node still works; False after a mistake of ours."""
-        return self._wiring.core.is_alive
+        return self._wiring is None or self._wiring.core.is_alive
 
     def close(self) -> None:
-        """Stop working, and take back a raised hand that is latched."""
-        self._wiring.close()
+        """Stop working, and take back a raised hand that is latched; once is enough."""
+        # Taken away first: a core that is stopped on purpose is no dead one.
+        wiring, self._wiring = self._wiring, None
+        if wiring is not None:
+            wiring.close()
+
+    def destroy_node(self) -> None:
+        """Close, and take the node down."""
+        self.close()
+        super().destroy_node()
 
 
 def main(args: list[str] | None = None) -> int:
@@ -84,7 +108,6 @@ def _spin(make_node: Callable[[], HandDetector], is_over: threading.Event) -> in
         node.get_logger().fatal("The worker has ended by a mistake; it is printed above.")
     executor.shutdown()
     spinning.join()
-    node.close()
     node.destroy_node()
     return 0 if is_over.is_set() else 1
 

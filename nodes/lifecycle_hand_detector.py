@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import sys
+from typing import Any
 
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
-from nodes.hand_detector import run
-from nodes.ros_wiring import RosWiring, current_parameters, declare_parameters
+from nodes.hand_detector import FROM_OVERRIDES, run
+from nodes.memory import give_back
+from nodes.ros_parameters import RosParameters
+from nodes.ros_wiring import RosWiring
 from tracker.config import NODE_NAME
 from tracker.errors import TrackerError
 
@@ -18,14 +21,22 @@ class LifecycleHandDetector(LifecycleNode):
     rclpy manages publishers only, so subscriptions are made on activation and taken down on
     deactivation; a raised hand is taken back then.
 
+    Args:
+        node_name: Its name, unless a remapping gives another one.
+        options: As of every rclpy lifecycle node.
+
     Raises:
         ConfigError: A parameter is unknown or out of range.
     """
 
-    def __init__(self) -> None:
-        super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True)
-        declare_parameters(self)
+    def __init__(self, node_name: str = NODE_NAME, **options: Any) -> None:
+        super().__init__(node_name, **options | FROM_OVERRIDES)
         self._wiring: RosWiring | None = None
+        try:
+            self._declared = RosParameters(self, is_managed=True)
+        except TrackerError:
+            super().destroy_node()
+            raise
 
     @property
     def is_alive(self) -> bool:
@@ -38,11 +49,18 @@ class LifecycleHandDetector(LifecycleNode):
         wiring, self._wiring = self._wiring, None
         if wiring is not None:
             wiring.close()
+            del wiring
+            give_back()
+
+    def destroy_node(self) -> None:
+        """Close, and take the node down."""
+        self.close()
+        super().destroy_node()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Load the models."""
         try:
-            self._wiring = RosWiring(self, current_parameters(self))
+            self._wiring = RosWiring(self, self._declared)
         except TrackerError as error:
             self.get_logger().error(str(error))
             return TransitionCallbackReturn.FAILURE

@@ -39,12 +39,13 @@ def descriptors() -> list[Descriptor]:
     return [_descriptor(name) for name in Config.model_fields]
 
 
-def changed(config: Config, changes: dict[str, Any]) -> Config:
-    """The configuration with parameters set while the node runs.
+def changed(config: Config, changes: dict[str, Any], *, is_running: bool = True) -> Config:
+    """The configuration with parameters set while the node lives.
 
     Args:
         config: The one in force.
         changes: New values by name; ROS's own parameters are passed over.
+        is_running: Whether those that are not `live` have had their effect already.
 
     Raises:
         ConfigError: A value is refused, or the parameter cannot change while the node runs.
@@ -53,14 +54,15 @@ def changed(config: Config, changes: dict[str, Any]) -> Config:
     fixed = [
         name
         for name, value in ours.items()
-        if name in Config.model_fields
+        if is_running
+        and name in Config.model_fields
         and not parameter_extra(name)["live"]
         and value != getattr(config, name)
     ]
     if fixed:
         raise ConfigError(
             f"{', '.join(f'`{name}`' for name in fixed)} cannot change while the node runs; "
-            "start it anew with the new value."
+            "start it anew with the new value, or clean a lifecycle node up before."
         )
     return config.replace(**ours) if ours else config
 

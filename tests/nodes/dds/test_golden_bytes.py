@@ -226,7 +226,9 @@ CASES = {
     ),
     "Detection3DArray": (encode(a_track()), {"header": HEADER, "detections": [detection()]}),
     "DiagnosticArray": (
-        encode_statuses([Status("images", 2, "missing", {"topic": "/image_raw"})], STAMP_NS),
+        encode_statuses(
+            [Status("images", 2, "missing", {"topic": "/image_raw"})], STAMP_NS, "hand_detector"
+        ),
         {
             "header": {"stamp": STAMP},
             "status": [

@@ -59,7 +59,7 @@ def folder() -> Path | None:
     return Path(place) / f"compiled-{content.hexdigest()}"
 
 
-class _BySources(_CacheLocator):  # type: ignore[misc]  # numba has no types
+class _BySources(_CacheLocator):
     def __init__(self, file: str) -> None:
         self._file = Path(file)
 
@@ -77,11 +77,11 @@ class _BySources(_CacheLocator):  # type: ignore[misc]  # numba has no types
         return cls(file)
 
 
-class _Files(CompileResultCacheImpl):  # type: ignore[misc]
+class _Files(CompileResultCacheImpl):
     _locator_classes = (_BySources,)
 
 
-class _Cache(FunctionCache):  # type: ignore[misc]
+class _Cache(FunctionCache):
     """Numba's, where a file that cannot be read or written is no reason to stop."""
 
     _impl_class = _Files
