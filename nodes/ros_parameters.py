@@ -13,9 +13,10 @@ from rcl_interfaces.msg import (
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from nodes.parameters import Descriptor, changed, descriptors, is_ours
+from nodes.parameters import Descriptor, changed, descriptors
 from tracker.config import Config
 from tracker.errors import ConfigError
+from tracker.parameter_file import is_ours
 
 
 class RosParameters:

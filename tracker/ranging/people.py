@@ -48,7 +48,7 @@ class PersonClusters:
     @property
     def is_slim(self) -> BoolArray:
         """Shape (C,): one thing alone, thinner than a trouser leg, as of chairs and tables."""
-        return (self.legs == 1) & (self.width_m < TROUSERS_WIDTH_MIN_M)
+        return np.asarray((self.legs == 1) & (self.width_m < TROUSERS_WIDTH_MIN_M))
 
     @staticmethod
     def none() -> PersonClusters:
