@@ -17,8 +17,8 @@ import numpy as np
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Hands, LocatedScan, Measurements, Scan
-from tracker.errors import TransformError
-from tracker.geometry import RigidTransform, euler_to_quaternion
+from tracker.geometry import RigidTransform
+from tracker.locating import CameraLocator, CameraPlace, choose_scan
 from tracker.notes import Note, NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.perception.upright import Turn, upright_turn
@@ -26,9 +26,7 @@ from tracker.picture_camera import PictureCameras, configured_camera
 from tracker.ranging import (
     Background,
     bearing_span_rad,
-    body_pose,
     expected_hands,
-    locate_scan,
     measure_people,
     mend_scan,
     scan_people,
@@ -43,8 +41,6 @@ if TYPE_CHECKING:
 
 #: A step of the stamps beyond this is another time; nobody is remembered for so long.
 _FORGOTTEN_NS = 60_000_000_000
-#: A person is seen by two beams at least.
-_BEAMS_MIN = 2
 
 
 class Pipeline:
@@ -84,8 +80,7 @@ class Pipeline:
         self._sustained_ns = -1
         self._background = Background()
         self._last_stamp_ns: int | None = None
-        self._camera_pose: RigidTransform | None = None
-        self._located_ns, self._is_supposed = 0, False
+        self._camera_locator = CameraLocator()
         self._turn = Turn()
         self._notes: list[Note] = []
         self._scan_notes: tuple[Note, ...] = ()
@@ -189,13 +184,21 @@ class Pipeline:
         self._notes += camera_notes
         if image.remark:
             self._note(NoteKind.BIT_DEPTH_GUESSED, image.remark)
-        fixed_from_camera, is_located = self._locate_camera(image)
-        scan = self._nearest_scan(image.stamp_ns, fixed_from_camera, is_located)
+        place = self._locate_camera(image)
+        fixed_from_camera = place.fixed_from_camera
+        scan, scan_notes = choose_scan(
+            self.room.scans_by_age(image.stamp_ns),
+            self.transforms,
+            image.stamp_ns,
+            place,
+            self.config,
+        )
+        self._notes += scan_notes
         people = scan_people(scan, self.config)
         piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
         size = (image.width, image.height)
         self._turn_upright(fixed_from_camera)
-        if piecewise is not None and is_located:
+        if piecewise is not None and place.is_located:
             known_xy_m = np.concatenate([self.tracker.positions_m, people.xy_m])
             expected_px = expected_hands(known_xy_m, self.camera, fixed_from_camera)
             piecewise.expect(self._turn.boxes(expected_px, size))
@@ -232,9 +235,7 @@ class Pipeline:
         customers_xy_m = tracks.mean[tracks.confirmed, :2]
         self._background.spare(customers_xy_m, self.config.same_person_distance_m)
         pose = approach = None
-        frame_id = self._frame_without_transform(image)
-        if is_located:
-            frame_id = self.config.fixed_frame
+        if place.is_located:
             pose = customer_pose(tracks, robot_xy_m, self.config.fixed_frame, self.config)
         if pose is not None:
             approach = approach_pose(pose, robot_xy_m, self.config.approach_distance_m)
@@ -246,10 +247,10 @@ class Pipeline:
             hand_raised=bool(tracks.raised.any()),
             customer_pose=pose,
             approach_pose=approach,
-            sensor_pose=fixed_from_camera.planar if is_located else None,
+            sensor_pose=fixed_from_camera.planar if place.is_located else None,
             scan=scan,
             notes=tuple(self._notes),
-            frame_id=frame_id,
+            frame_id=place.frame_id,
             work=piecewise.work if piecewise is not None else None,
         )
 
@@ -273,7 +274,7 @@ class Pipeline:
         self.tracker.reset()
         self._background.reset()
         self.detector.reset()
-        self._camera_pose, self._is_supposed = None, False
+        self._camera_locator.reset()
         self._sustained_ns = -1
         self._scan_notes = ()
 
@@ -295,51 +296,23 @@ class Pipeline:
         self._forget()
         self.room.forget_scans_after(stamp_ns)
 
-    def _camera_frame(self, image: CameraImage) -> str:
-        return self.config.camera_frame or image.frame_id
-
-    def _locate_camera(self, image: CameraImage) -> tuple[RigidTransform, bool]:
-        """The camera in the fixed frame, and whether that is known.
-
-        Before the first transform the camera itself is the fixed frame: hands are still told apart
-        and counted. Where a transform is missing later, the camera is supposed where it was, and
-        once it is located again, what was measured meanwhile is doubted by how far it has moved.
-        """
-        frame = self._camera_frame(image)
-        try:
-            found = self.transforms.lookup(self.config.fixed_frame, frame, image.stamp_ns)
-        except TransformError as error:
-            self._note(NoteKind.NO_POSE, f"no pose: {error}")
-            if self._camera_pose is None:
-                return self._rolled(RigidTransform()), False
-            self._is_supposed = True
-            return self._camera_pose, False
-        if self._camera_pose is None and self.tracker.has_tracks:
+    def _locate_camera(self, image: CameraImage) -> CameraPlace:
+        """Where the camera is; tracks follow when the fixed frame is another, or was lost."""
+        place = self._camera_locator.locate(
+            self.transforms, image.stamp_ns, image.frame_id, self.config
+        )
+        if place.missing:
+            self._note(NoteKind.NO_POSE, f"no pose: {place.missing}")
+        if place.is_first and self.tracker.has_tracks:
             self._note(
                 NoteKind.NEW_FIXED_FRAME,
                 "the first transform has come: tracks start again in the fixed frame",
             )
             self.tracker.reset()
             self._background.reset()
-        located = self._rolled(body_pose(found, frame, self.config.camera_axes))
-        if self._is_supposed and self._camera_pose is not None:
-            moved = located @ self._camera_pose.inverse()
-            self.tracker.doubt(moved.planar, (image.stamp_ns - self._located_ns) / 1e9)
-        self._camera_pose, self._located_ns, self._is_supposed = located, image.stamp_ns, False
-        return located, True
-
-    def _frame_without_transform(self, image: CameraImage) -> str | None:
-        """The camera's frame, as long as that is the fixed one and its axes are the body's."""
-        frame, unmoved = self._camera_frame(image), RigidTransform()
-        body = self._rolled(body_pose(unmoved, frame, self.config.camera_axes))
-        is_body = body == unmoved
-        return frame if self._camera_pose is None and is_body else None
-
-    def _rolled(self, target_from_camera: RigidTransform) -> RigidTransform:
-        """The camera as it is mounted, where that is not what its transform says."""
-        roll_rad = float(np.radians(self.config.camera_roll_deg))
-        roll = RigidTransform(quaternion_xyzw=euler_to_quaternion(roll_rad, 0.0, 0.0))
-        return target_from_camera @ roll if roll_rad else target_from_camera
+        if place.moved is not None:
+            self.tracker.doubt(place.moved, place.unseen_s)
+        return place
 
     def _turn_upright(self, fixed_from_camera: RigidTransform) -> None:
         """The detector sees pictures in which up is up; it begins anew where the turn changes."""
@@ -364,77 +337,6 @@ class Pipeline:
             return None
         range_max_m = min(scan.range_max_m, self.config.person_range_max_m)
         return View.between(np.append(scan.laser_xy_m, 0.0), *scan.span_rad, range_max_m)
-
-    def _nearest_scan(
-        self, stamp_ns: int, fixed_from_camera: RigidTransform, is_located: bool
-    ) -> LocatedScan | None:
-        """The nearest scan that can be located, in the fixed frame at its own stamp.
-
-        Transforms come later than scans: the nearest scan may lie beyond the last of them, where
-        the one before serves as well.
-        """
-        scans = self.room.scans_by_age(stamp_ns)
-        if not scans:
-            self._note(NoteKind.NO_SCAN, "no scan has come")
-            return None
-        limit_s = self.config.scan_max_age_s
-        timely = [scan for scan in scans if abs(scan.stamp_ns - stamp_ns) <= _ns(limit_s)]
-        if not timely:
-            off_s = (scans[0].stamp_ns - stamp_ns) / 1e9
-            where = f"{abs(off_s):.3f} s {'later' if off_s > 0 else 'earlier'}"
-            self._note(
-                NoteKind.SCAN_TOO_OLD, f"no scan within {limit_s:g} s: the nearest is {where}"
-            )
-            return None
-        usable = [scan for scan in timely if len(scan.ranges_m) >= _BEAMS_MIN]
-        if not usable:
-            beams = len(timely[0].ranges_m)
-            self._note(
-                NoteKind.SCAN_WITHOUT_BEAMS,
-                f"the scan has {beams} beams; {_BEAMS_MIN} or more are needed",
-            )
-            return None
-        if not usable[0].valid.any():
-            self._note(NoteKind.SCAN_WITHOUT_RETURNS, "no beam of the scan has a return")
-        if not is_located or self.config.fixed_frame == self.config.camera_frame:
-            laser = self._laser_beside_camera(usable[0], fixed_from_camera)
-            return locate_scan(usable[0], laser)
-        failures = []
-        for scan in usable:
-            try:
-                laser = self.transforms.lookup(
-                    self.config.fixed_frame, scan.frame_id, scan.stamp_ns
-                )
-            except TransformError as error:
-                failures.append(error)
-            else:
-                return locate_scan(scan, laser, self._laser_at_end(scan))
-        self._note(NoteKind.SCAN_NOT_LOCATED, f"scan unused: {failures[0]}")
-        return None
-
-    def _laser_at_end(self, scan: Scan) -> RigidTransform | None:
-        """The laser at the last beam of a scan, where transforms allow."""
-        try:
-            return self.transforms.lookup(self.config.fixed_frame, scan.frame_id, scan.end_ns)
-        except TransformError:
-            return None
-
-    def _laser_beside_camera(
-        self, scan: Scan, fixed_from_camera: RigidTransform
-    ) -> RigidTransform:
-        """The laser by its mounting beside the camera; the same place where that is unknown."""
-        frame = self.config.camera_frame
-        try:
-            mounting = self.transforms.lookup(scan.frame_id, frame, scan.stamp_ns)
-        except TransformError:
-            self._note(
-                NoteKind.LASER_MOUNTING_UNKNOWN,
-                "no mounting of the laser: it is taken to be the camera's",
-            )
-            x_m, y_m, yaw_rad = fixed_from_camera.planar  # level, however the camera is rolled
-            return RigidTransform.from_planar(x_m, y_m, yaw_rad)
-        laser_from_camera = self._rolled(body_pose(mounting, frame, self.config.camera_axes))
-        return fixed_from_camera @ laser_from_camera.inverse()
 
 
 def _with_clothes(measurements: Measurements, image: CameraImage, hands: Hands) -> Measurements:

@@ -20,7 +20,7 @@ FLOORS = [
     {"geometry", "config_file", "lens"},
     {"camera", "transforms"},
     {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
-    {"problems", "picture_camera"},
+    {"problems", "picture_camera", "locating"},
     {"pipeline", "recording"},
     {"simulation"},
     {"evaluation"},
