@@ -19,6 +19,9 @@ from tracker.wording import one_line
 
 INTERRUPTED = 130
 
+#: With half a gigabyte the libraries of linear algebra crash as they are imported (tried).
+_ADDRESSES_MIN = 700_000_000
+
 
 def run_program(name: str, body: Callable[[], None]) -> NoReturn:
     """Run a program, and leave.
@@ -48,6 +51,7 @@ def print_version(wanted: bool) -> None:
 def _outcome(body: Callable[[], None]) -> tuple[int, str]:
     try:
         _check_words()
+        _check_memory()
         body()
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -63,6 +67,10 @@ def _outcome(body: Callable[[], None]) -> tuple[int, str]:
         return leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None), ""
     except MemoryError:
         return 1, "there is not enough memory; give the process more, or less to do."
+    except ImportError as error:
+        if not str(error.path).endswith((".so", ".pyd")):
+            raise
+        return 1, f"a library cannot be loaded ({error}); mostly the memory is too small."
     except BrokenPipeError:  # `| head` has seen enough
         return 1, ""
     except OSError as error:
@@ -82,6 +90,24 @@ def _check_words() -> None:
     for word in sys.argv[1:]:
         if not word.isascii() and any("\ud800" <= letter <= "\udfff" for letter in word):
             raise ConfigError(f"{word}: is no UTF-8 text; give the file another name.")
+
+
+def _check_memory() -> None:
+    """Refuse to begin where libraries crash as they are loaded, without a word.
+
+    Raises:
+        ConfigError: The address space is limited to less.
+    """
+    if sys.platform == "win32":
+        return
+    from resource import RLIM_INFINITY, RLIMIT_AS, getrlimit
+
+    limit, _ = getrlimit(RLIMIT_AS)
+    if limit != RLIM_INFINITY and limit < _ADDRESSES_MIN:
+        raise ConfigError(
+            f"The address space is limited to {limit / 1e9:.2f} GB (ulimit -v); needed are "
+            f"{_ADDRESSES_MIN / 1e9:g} GB, and 3 for the work with pictures."
+        )
 
 
 def _interrupted() -> tuple[int, str]:

@@ -77,6 +77,16 @@ def test_ctrl_c_is_one_line_from_the_first_import_on(delay_s):
     assert error.decode().splitlines()[-1] == STOPPED
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no such limit")
+def test_too_little_memory_is_one_line_instead_of_a_crash():
+    import resource
+
+    limit = (500_000_000, resource.RLIM_INFINITY)
+    ended = run("monte-carlo", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit))
+    assert ended.returncode == 2
+    assert "limited to 0.50 GB (ulimit -v)" in last_line(ended)
+
+
 def test_a_text_for_a_terminal_has_no_control_characters_and_no_endless_words():
     assert one_line("a\x1b[2Jb\nc") == "a\\x1b[2Jb\\nc"
     assert one_line(f"see {'x' * 5000} there") == f"see {'x' * 200}... there"
