@@ -9,6 +9,9 @@ from typing import NamedTuple
 from tracker.recording.damage import Damage
 from tracker.recording.unpacking import LARGEST_BYTES, DamagedError
 
+#: What a block's records may come to; recorders' chunks have some thousands at most.
+_MOST_RECORDS = 500_000
+
 
 class Block(NamedTuple):
     """A piece of a file with messages: a chunk, or a run of messages outside any.
@@ -74,6 +77,16 @@ class Run:
             offset, end, first, last = self._now
             self._blocks.append(Block(offset, end - offset, first, last, "", end - offset))
             self._now = None
+
+
+def check_count(count: int) -> None:
+    """Refuse a block of more records than any has that a recorder wrote.
+
+    Raises:
+        DamagedError: There are so many.
+    """
+    if count > _MOST_RECORDS:
+        raise DamagedError(f"a chunk holds more than {_MOST_RECORDS} records")
 
 
 def placed(blocks: list[Block], first_ns: int, last_ns: int) -> list[Block]:

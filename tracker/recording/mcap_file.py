@@ -10,7 +10,7 @@ from zlib import crc32
 from mcap.opcode import Opcode
 
 from tracker.messages import Event, decode
-from tracker.recording.blocks import Block, Part, in_order, placed
+from tracker.recording.blocks import Block, Part, check_count, in_order, placed
 from tracker.recording.damage import Damage
 from tracker.recording.mcap_layout import HEAD, MESSAGE, McapLayout
 from tracker.recording.sources import RawMessage, TopicInfo, topics_of, unreadable
@@ -141,9 +141,12 @@ class McapSource:
         data = unpack(packed, block.compression, block.unpacked_size)
         if block.checksum and crc32(data) != block.checksum:
             raise DamagedError("the checksum of a chunk is wrong")
-        view, end, found = memoryview(data), 0, []
+        view, end, count, found = memoryview(data), 0, 0, []
         while end + HEAD.size <= len(data):
             opcode, length = HEAD.unpack_from(data, end)
+            if not opcode:
+                raise DamagedError("a chunk holds what is no record")
+            check_count(count := count + 1)
             body = end + HEAD.size
             end = body + length
             if end > len(data):

@@ -13,7 +13,7 @@ from rosbags.typesys.store import Typestore
 from tracker.errors import RecordingError
 from tracker.messages import Event, events_from_message
 from tracker.messages.types import MALFORMED, TF_MESSAGE, TF_MESSAGE_ROS1
-from tracker.recording.blocks import Block, Part, in_order, placed
+from tracker.recording.blocks import Block, Part, check_count, in_order, placed
 from tracker.recording.damage import Damage
 from tracker.recording.ros1_layout import Ros1Layout, read_record
 from tracker.recording.sources import RawMessage, topics_of, unreadable
@@ -91,7 +91,7 @@ class Ros1Source:
     def _look_through(self) -> tuple[list[Block], dict[int, int]]:
         """Blocks with their times, and messages of each connection; unpacked where not indexed."""
         layout = self._layout
-        if layout.is_indexed and not layout.damages:
+        if layout.is_finished and layout.is_indexed and not layout.damages:
             return layout.blocks, layout.counts
         found: list[Block] = []
         counts = Counter[int]()
@@ -130,6 +130,7 @@ class Ros1Source:
         found: list[Part] = []
         view, offset = memoryview(data), 0
         while (record := read_record(data, offset)) is not None:
+            check_count(len(found))
             begin, offset = offset + record.data, offset + record.end
             if offset > len(data):
                 break
@@ -137,6 +138,8 @@ class Ros1Source:
                 found.append(Part(record.log_ns, record.number(b"conn"), view[begin:offset]))
             elif record.opcode == _CONNECTION:
                 self._layout.define(record, data[begin:offset])
+        if data and not offset:
+            raise DamagedError("a chunk holds no records")
         return found
 
 

@@ -22,6 +22,9 @@ LARGEST_BYTES = 400_000_000
 #: Read and written at once, and left free on the disk, in bytes.
 _STEP_BYTES, _ROOM_BYTES = 1 << 20, 200_000_000
 
+#: A file that unpacks to more than so many times its size, and so many bytes, is a bomb.
+_BOMB_RATIO, _BOMB_BYTES = 200, 1_000_000_000
+
 ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
 
 
@@ -95,6 +98,7 @@ def unpacked_file(path: Path) -> Iterator[Path]:
 
 def _copy(path: Path, packed: BinaryIO, file: BinaryIO) -> None:
     folder = Path(file.name).parent
+    most = _BOMB_BYTES + _BOMB_RATIO * path.stat().st_size
     with zstandard.ZstdDecompressor().stream_reader(packed, read_across_frames=True) as stream:
         while True:
             try:
@@ -103,6 +107,11 @@ def _copy(path: Path, packed: BinaryIO, file: BinaryIO) -> None:
                 return
             if not piece:
                 return
+            if file.tell() > most:
+                raise RecordingError(
+                    f"{path}: unpacks to more than {most} bytes, which no recording does; if it "
+                    "is one, unpack it with `unzstd` and name what comes of it."
+                )
             if shutil.disk_usage(folder).free < _ROOM_BYTES:
                 raise RecordingError(
                     f"{path}: has no room on the disk of {folder} when it is unpacked; make "
