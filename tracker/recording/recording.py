@@ -24,6 +24,10 @@ _STAMPS_COMPARED, _WORTH_A_WORD_S = 10, 1.0
 _PICTURES = ("video frames", "photos")
 
 
+#: ROS's stamps hold 31 bits of seconds.
+_TOO_LATE_NS = 2**31 * 1_000_000_000
+
+
 @dataclass(frozen=True, slots=True)
 class Summary:
     """What a recording says of itself.
@@ -213,8 +217,11 @@ class Recording(Closing):
             self._skip(message, str(error))
             return []
         if self._stamps == "log":
-            return [_restamped(event, message.log_ns) for event in events]
-        return events
+            events = [_restamped(event, message.log_ns) for event in events]
+        usable = [event for event in events if _is_in_time(event)]
+        if len(usable) < len(events):
+            self._skip(message, "its stamp lies beyond what ROS can say, the year 2038")
+        return usable
 
     def _skip(self, message: RawMessage, why: str) -> None:
         if message.topic in self.skipped:
@@ -265,6 +272,10 @@ class Recording(Closing):
                 f"{self.path}: the header stamps are {median(offsets_s):+.3f} s from the time of "
                 f"recording; {taken} stamps are used, and could be {other} stamps."
             )
+
+
+def _is_in_time(event: Event) -> bool:
+    return isinstance(event, CameraModel) or event.stamp_ns < _TOO_LATE_NS
 
 
 def _restamped(event: Event, stamp_ns: int) -> Event:

@@ -289,3 +289,18 @@ def test_recordings_of_real_scanners_replay(name, scans, transforms, topic):
     assert (counts["Scan"], counts["StampedTransform"]) == (scans, transforms)
     assert [log for log, _ in events] == sorted(log for log, _ in events)
     assert any(event.valid.any() for _, event in events if isinstance(event, Scan))
+
+
+@pytest.mark.parametrize("stamps", ["header", "log"])
+def test_a_stamp_beyond_what_ros_can_say_is_counted_and_the_rest_is_read(
+    tmp_path, sensor_items, stamps
+):
+    items = list(sensor_items(5))
+    topic, log_ns, scan = items[2]
+    message = deserialize(*encode(scan))
+    message.header.stamp.sec, message.header.stamp.nanosec = 2**31 - 1, 2**32 - 1
+    late_ns = 2**62 if stamps == "log" else log_ns
+    write_mcap(tmp_path / "a.mcap", [*items, (topic, late_ns, serialize(message))])
+    with open_recording(tmp_path / "a.mcap", stamps=stamps) as recording:
+        assert kinds(recording.events())["Scan"] == 5
+        assert "beyond what ROS can say" in recording.skipped["/scan"].first
