@@ -19,7 +19,7 @@ REAL_TIME := -m "slow and not soak" -rs
 # Whoever waits longer, in seconds, waits forever: it fails, and shows where.
 PYTEST := $(BIN)/python -m pytest --timeout 300
 
-.PHONY: help demo test soak lint docs bench notebooks config setup
+.PHONY: help demo test soak faults lint docs bench notebooks config setup
 .DEFAULT_GOAL := help
 
 help:  ## this index
@@ -38,6 +38,9 @@ endif
 
 soak: $(VENV)/.installed-$(TESTED)  ## an hour of simulated time through the node: about eight minutes
 	SOAK_MINUTES=60 $(BIN)/python -m pytest -m soak -s
+
+faults: $(VENV)/.installed  ## harm recordings, fill disks, kill writers: is anything else lost?
+	$(BIN)/python -m benchmarks.faults
 
 lint: $(VENV)/.installed-lint  ## style and types
 	$(BIN)/ruff check .

@@ -152,7 +152,7 @@ def replay(
         for reason in recording.unread_lines():
             problems.add(reason, reason)
         for reason in recording.skipped_lines():
-            problems.add("skipped", reason)
+            problems.add(reason, reason)
         remarks = (*recording.notes, *problems.remarks())
         episodes = evaluation.report() if has_truth else None
         summary = summarize(history, frames_seen=frames_seen, evaluation=episodes) | {

@@ -1,0 +1,1 @@
+"""A campaign that harms recordings and kills writers: `python -m benchmarks.faults`."""
