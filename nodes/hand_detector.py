@@ -18,7 +18,6 @@ from nodes.ros_wiring import RosWiring
 from tracker.config import NODE_NAME
 from tracker.errors import ConfigError, TrackerError
 from tracker.program import print_version
-from tracker.tracking.ready import compile_tracker
 
 #: What makes names that are no parameters known.
 FROM_OVERRIDES = {"automatically_declare_parameters_from_overrides": True}
@@ -40,7 +39,6 @@ class HandDetector(Node):
 
     def __init__(self, node_name: str = NODE_NAME, **options: Any) -> None:
         super().__init__(node_name, **options | FROM_OVERRIDES)
-        compile_tracker(self.get_logger().info)
         self._wiring: RosWiring | None = None
         try:
             self._wiring = RosWiring(self, RosParameters(self))

@@ -43,6 +43,7 @@ from nodes.topics import (
 from tracker.config import Config
 from tracker.errors import TrackerError
 from tracker.messages import Encoded
+from tracker.tracking.ready import compile_tracker
 
 _CLASSES = {
     f"{package}/msg/{kind.__name__}": kind
@@ -139,6 +140,7 @@ class RosWiring:
             self._node.destroy_publisher(publisher)
 
     def _make_core(self, config: Config) -> NodeCore:
+        compile_tracker(self._node.get_logger().info)
         return NodeCore(
             config,
             publish=self._publish,

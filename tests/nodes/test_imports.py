@@ -7,7 +7,7 @@ import pytest
 
 NODES = Path(__file__).parents[2] / "nodes"
 SHARED = (
-    "core", "diagnostics", "fault_log", "header_peek", "image_silence", "inbox",
+    "core", "diagnostics", "fault_log", "header_peek", "image_silence", "inbox", "link",
     "outputs", "parameters", "qos", "topics", "work_budget",
 )  # fmt: skip
 WIRES = {
