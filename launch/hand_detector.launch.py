@@ -4,7 +4,6 @@ Imports nothing of the project, since `ros2 launch` may run in a Python that doe
 dependencies.
 """
 
-import tempfile
 from pathlib import Path
 
 import yaml
@@ -14,6 +13,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import Parameter
 
 PACKAGE, NODE_NAME = "raised_hand_tracker", "hand_detector"
 
@@ -26,6 +26,8 @@ TOPICS = {
     "customer_pose_topic": ("customer_pose", "the selected customer"),
     "approach_pose_topic": ("~/approach_pose", "where to stand in front of that customer"),
     "debug_topic": ("hand_detection_debug", "the debug image"),
+    "tf_topic": ("/tf", "transforms (`tf` for those of the namespace, as Nav2 has it)"),
+    "tf_static_topic": ("/tf_static", "transforms that hold for ever"),
 }
 
 
@@ -54,7 +56,9 @@ def generate_launch_description():
                 package="rviz2",
                 executable="rviz2",
                 arguments=["-d", LaunchConfiguration("rviz_config")],
-                parameters=[{"use_sim_time": LaunchConfiguration("use_sim_time")}],
+                parameters=[
+                    Parameter("use_sim_time", LaunchConfiguration("use_sim_time"), value_type=bool)
+                ],
                 condition=IfCondition(LaunchConfiguration("rviz")),
             ),
         ]
@@ -68,9 +72,11 @@ def _hand_detector(context):
     def is_true(name):
         return value_of(name).lower() in ("true", "1", "yes")
 
-    own = {"use_sim_time": is_true("use_sim_time")}
+    # Each by itself: launch_ros writes a dictionary to a file that it leaves behind.
+    own = [Parameter("use_sim_time", is_true("use_sim_time"), value_type=bool)]
     if value_of("image_transport"):
-        own["image_transport"] = value_of("image_transport")
+        own.append(Parameter("image_transport", value_of("image_transport"), value_type=str))
+    file, full_name = value_of("params_file"), f"{value_of('namespace').strip('/')}/{NODE_NAME}"
     remappings = [(default, value_of(name)) for name, (default, _) in TOPICS.items()]
     # The compressed topic hangs below the raw one, and has to be remapped on its own.
     remappings.append(("image_raw/compressed", value_of("image_topic") + "/compressed"))
@@ -80,7 +86,7 @@ def _hand_detector(context):
             executable="lifecycle_hand_detector" if is_true("lifecycle") else "hand_detector",
             name=NODE_NAME,
             namespace=value_of("namespace"),
-            parameters=[_for_every_namespace(value_of("params_file")), own],
+            parameters=[file, *_for_any_namespace(file, full_name.strip("/")), *own],
             remappings=[(old, new) for old, new in remappings if old != new],
             ros_arguments=["--log-level", value_of("log_level")],
             respawn=is_true("respawn"),
@@ -89,22 +95,28 @@ def _hand_detector(context):
     ]
 
 
-def _for_every_namespace(params_file):
-    """The same parameters for a node of any full name.
+def _for_any_namespace(params_file, full_name):
+    """What the file says of a node without a namespace, if this one has one.
 
-    ROS takes `hand_detector:` in a file for `/hand_detector` alone and would silently pass over
+    ROS takes `hand_detector:` in a file for `/hand_detector` alone, and would silently pass over
     the whole file once the node is in a namespace.
     """
     document = yaml.safe_load(Path(params_file).read_text(encoding="utf-8")) or {}
-    parameters = {}
-    for name in ("**", "/**", f"/{NODE_NAME}", NODE_NAME):
-        parameters.update((document.get(name) or {}).get("ros__parameters") or {})
-    if not parameters:
+    sections = dict(_sections("", document))
+    if not any(name.split("/")[-1] in (NODE_NAME, "*", "**") for name in sections):
         raise RuntimeError(
             f"{params_file} holds no parameters; needed is `{NODE_NAME}:` with `ros__parameters:`."
         )
-    with tempfile.NamedTemporaryFile(
-        "w", prefix="hand_detector_", suffix=".yaml", delete=False, encoding="utf-8"
-    ) as file:
-        yaml.safe_dump({"/**": {"ros__parameters": parameters}}, file)
-    return file.name
+    if full_name in sections or full_name == NODE_NAME:
+        return []
+    found = sections.get(NODE_NAME, {})
+    return [Parameter(name, value, value_type=type(value)) for name, value in found.items()]
+
+
+def _sections(name, tree):
+    """Names of nodes without the first slash, each with its parameters."""
+    for key, below in tree.items() if isinstance(tree, dict) else ():
+        if key == "ros__parameters":
+            yield name, below or {}
+        else:
+            yield from _sections(f"{name}/{key}".replace("//", "/").strip("/"), below)
