@@ -1,6 +1,6 @@
 """A robot's drivers, for the tests: an .mcap's messages on ROS 2 at their pace.
 
-    python play_recording.py RECORDING [--loop N] [--rate R] [--without TOPIC]
+    python play_recording.py RECORDING [--loop N] [--rate R] [--without TOPIC] [--late-tf S]
 
 Images, scans and CameraInfo are offered best effort, as cameras and scanners do.
 """
@@ -8,6 +8,7 @@ Images, scans and CameraInfo are offered best effort, as cameras and scanners do
 import argparse
 import importlib
 import time
+from collections import deque
 
 import rclpy
 from mcap.reader import make_reader
@@ -35,6 +36,7 @@ def main():
     parser.add_argument("--rate", type=float, default=1.0)
     parser.add_argument("--wait-for", default="/tf", help="begin when this topic has a listener")
     parser.add_argument("--without", action="append", default=[])
+    parser.add_argument("--late-tf", type=float, default=0.0, help="seconds behind the others")
     arguments = parser.parse_args()
     rclpy.init()
     node = rclpy.create_node("player")
@@ -58,11 +60,20 @@ def main():
         time.sleep(0.5)
         for _ in range(arguments.loop):
             began, first_ns = time.monotonic(), None
+            held = deque()
             for _, channel, message in reader.iter_messages(topics=list(publishers)):
                 first_ns = first_ns or message.log_time
-                due = began + (message.log_time - first_ns) / 1e9 / arguments.rate
+                at_s = (message.log_time - first_ns) / 1e9
+                while held and held[0][0] <= at_s:
+                    publishers["/tf"].publish(held.popleft()[1])
+                due = began + at_s / arguments.rate
                 time.sleep(max(due - time.monotonic(), 0.0))
-                publishers[channel.topic].publish(message.data)
+                if channel.topic == "/tf" and arguments.late_tf:
+                    held.append((at_s + arguments.late_tf, message.data))
+                else:
+                    publishers[channel.topic].publish(message.data)
+            for _, transform in held:
+                publishers["/tf"].publish(transform)
     time.sleep(0.5)
     node.destroy_node()
     rclpy.shutdown()

@@ -44,16 +44,17 @@ def assert_as_replay(ear, replayed, share=0.95):
 NO_SILENCE = ("-p", "image_silence_s:=60.0")
 
 
-def play_undisturbed(ear, start_node, play, *ros_arguments, loop=1):
+def play_undisturbed(ear, start_node, play, *ros_arguments, loop=1, late_tf_s=0.0):
     """Play until the node lost no image.
 
     On a machine that others use as well that takes tries, the last ones with slower clocks.
 
     Returns the node, and the rates by the stamps and by the player's clock.
     """
+    driving = ("--loop", loop, "--late-tf", late_tf_s)
     for speed in (1.0, 1.0, 0.5, 0.25, 0.1):
         node = start_node(*ros_arguments, *NO_SILENCE)
-        assert play("--loop", loop, "--rate", speed).wait(300.0) == 0
+        assert play(*driving, "--rate", speed).wait(300.0) == 0
         time.sleep(1.1)
         status = ear.statuses()["processing"]
         stamps, _ = ear.frames()
@@ -128,6 +129,17 @@ def test_a_node_with_bad_parameters_does_not_start(run, ear, name, value, reason
     node = run("-m", "nodes.hand_detector", "--ros-args", "-p", f"{name}:={value}", name="node")
     assert node.wait(30.0) == 2
     assert reason in node.log()
+
+
+def test_transforms_later_than_scans_and_images_cost_no_pose(ear, start_node, play, replayed):
+    expected = replayed()
+    play_undisturbed(ear, start_node, play, "-p", "transform_wait_s:=2.0", late_tf_s=0.15)
+    poses = ear.poses()
+    print(f"{len(poses)} poses, {len(expected.xy)} with timely transforms")
+    assert len(poses) >= 0.9 * len(expected.xy)
+    both = set(poses) & set(expected.xy)
+    off_m = [np.hypot(*np.subtract(poses[stamp], expected.xy[stamp])) for stamp in both]
+    assert np.percentile(off_m, 95) < 0.05
 
 
 def test_a_recording_that_loops_resets_cleanly(ear, start_node, play, replayed):

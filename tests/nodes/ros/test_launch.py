@@ -85,8 +85,13 @@ def test_a_parameter_file_counts_in_a_namespace(ear, launch, installed, model_st
     launch(f"params_file:={file}", "namespace:=robot1", "use_sim_time:=true", "tf_topic:=tf")
     names = ("fixed_frame", "pose_max_std_m", "use_sim_time")
     assert values(ear, "robot1/hand_detector", *names) == ["odom", 0.1, True]
-    listened = ear.node.get_subscriber_names_and_types_by_node("hand_detector", "/robot1")
-    assert {"/robot1/tf", "/tf_static", "/robot1/scan"} <= {topic for topic, _ in listened}
+    heard = {"/robot1/tf", "/tf_static", "/robot1/scan"}
+
+    def listened():
+        found = ear.node.get_subscriber_names_and_types_by_node("hand_detector", "/robot1")
+        return {topic for topic, _ in found}
+
+    ear.until(lambda: heard <= listened())
 
 
 def test_the_node_starts_with_the_packages_own_parameters(ear, launch, model_store):
