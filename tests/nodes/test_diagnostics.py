@@ -144,3 +144,23 @@ def test_a_picture_that_claims_too_many_pixels_is_counted_as_malformed(make_wire
     images = wire.diagnose()["images"]
     assert images.values["malformed"] == "1"
     assert "65x48 pixels" in images.values["last_fault"]
+
+
+def test_a_disabled_node_misses_nothing_and_waits_a_while_once_it_is_enabled(wire):
+    wire.core.enable(False)
+    wire.steady_ns += 5_000_000_000
+    assert {status.level for status in wire.diagnose().values()} == {OK}
+    assert wire.diagnose()["images"].message == "disabled"
+    wire.core.enable(True)
+    assert wire.diagnose()["images"].message == "awaited"
+    assert {status.level for status in wire.diagnose().values()} == {OK}
+    wire.steady_ns += 900_000_000
+    assert wire.diagnose()["images"].level == ERROR
+
+
+def test_two_robots_are_told_apart_by_the_nodes_full_name(make_wire):
+    wire = make_wire(node_name="/robot1/hand_detector")
+    wire.core.diagnose()
+    for status in wire.messages(Output.DIAGNOSTICS)[-1].status:
+        assert status.name.startswith("robot1/hand_detector: ")
+        assert status.hardware_id == "robot1/hand_detector"

@@ -58,3 +58,9 @@ def test_a_bad_change_is_refused_with_the_reason(changes, reason):
 
 def test_setting_a_fixed_parameter_to_what_it_is_passes():
     assert changed(Config(), {"fixed_frame": "map"}) == Config()
+
+
+def test_before_anything_runs_every_parameter_may_change_and_none_may_be_wrong():
+    assert changed(Config(), {"fixed_frame": "odom"}, is_running=False).fixed_frame == "odom"
+    with pytest.raises(ConfigError, match="person, spec"):
+        changed(Config(), {"ranging": "guess"}, is_running=False)
