@@ -92,8 +92,10 @@ class CameraLocator:
             self._is_supposed = True
             return CameraPlace(self._last, None, missing)
         unmoved = RigidTransform()
-        is_body = body_pose(unmoved, frame, config.camera_axes) == unmoved
-        return CameraPlace(mounted(unmoved, config), frame if is_body else None, missing)
+        pose = mounted(unmoved, config)
+        # Places in a frame with optical axes, or on its side, would be read wrongly.
+        is_plain = pose == unmoved == body_pose(unmoved, frame, config.camera_axes)
+        return CameraPlace(pose, frame if is_plain else None, missing)
 
 
 def mounted(target_from_camera: RigidTransform, config: Config) -> RigidTransform:
