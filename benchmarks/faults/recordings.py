@@ -73,11 +73,11 @@ class Kind(NamedTuple):
     is_told: bool = True
 
 
-def simulated(folder: Path) -> list[Message]:
-    """What a simulated robot records in two seconds, with pictures as JPEG."""
+def simulated(folder: Path, seconds: float = 2.0) -> list[Message]:
+    """What a simulated robot records, with pictures as JPEG."""
     scene, path = folder / "scene.yaml", folder / "base.mcap"
-    scene.write_text(SCENE)
-    write_simulation(load_scene(scene), path, 1, jpeg_quality=60)
+    scene.write_text(SCENE.replace("duration_s: 2.0", f"duration_s: {seconds}"))
+    write_simulation(load_scene(scene), path, 1, jpeg_quality=60, overwrite=True)
     with path.open("rb") as file:
         return [
             Message(channel.topic, message.log_time, schema.name, message.data)

@@ -25,6 +25,10 @@ _ROWS = "SELECT id, topic_id, timestamp FROM messages WHERE id BETWEEN ? AND ?"
 _SMALLEST_ROW_BYTES = 16
 
 
+#: So many failing queries are made to find what lies between damaged rows.
+_MOST_FAILURES = 20_000
+
+
 class SqliteSource:
     """A .db3 file, whole or damaged.
 
@@ -116,16 +120,20 @@ class SqliteSource:
 
     def _listed(self, first: int, last: int) -> Iterator[tuple[int, int, int]]:
         """The rows in a range of numbers; a range that fails is halved, down to single rows."""
-        ranges = [(first, last)]
-        while ranges:
+        ranges, rows, failures = [(first, last)], 0, 0
+        most = self._path.stat().st_size // _SMALLEST_ROW_BYTES
+        while ranges and failures < _MOST_FAILURES and rows <= most:
             low, high = ranges.pop()
             seen = low - 1
             try:
                 for row, key, log_ns in self._database.execute(_ROWS, (low, high)):
-                    seen = row
+                    seen, rows = row, rows + 1
+                    if rows > most:  # its pages lead in a circle
+                        self._note("rows come again and again")
+                        break
                     yield row, key, log_ns
             except sqlite3.DatabaseError as error:
-                low = seen + 1
+                low, failures = seen + 1, failures + 1
                 if low >= high:
                     self._note(str(error))
                     continue
