@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tracker.clock_offset import ClockOffset
 from tracker.containers import CameraImage, FrameResult, Scan
+from tracker.notes import NoteKind
 from tracker.scan_use import ScanUse
 from tracker.transforms import StampedTransform
 
@@ -17,6 +18,7 @@ class Problems:
     def __init__(self) -> None:
         self._faults = _Kinds()
         self._remarks = _Kinds()
+        self._remarked: set[NoteKind] = set()
         self._scan_use = ScanUse()
         self._parent_of: dict[str, str] = {}
         self._image_clock, self._scan_clock = ClockOffset(), ClockOffset()
@@ -44,8 +46,9 @@ class Problems:
         for note in result.notes:
             if note.kind.is_fault:
                 self.add(note.kind.value, f"{note} (image at {result.stamp_ns / 1e9:.3f} s)")
-            elif note.kind.is_remark:
-                self._remarks.add(note.kind.value, note.text)
+            elif note.kind.is_remark and note.kind not in self._remarked:
+                self._remarked.add(note.kind)
+                self.remark(note.text)
 
     def note_scan_use(self, max_age_s: float) -> None:
         """Say whether the scans that came were of any use.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 from tracker.messages import types
 from tracker.recording.sources import TopicInfo
@@ -62,13 +62,16 @@ class TopicTable:
 
     def find(self, asked: Topics) -> Topics:
         """Where the asked-for topics are missing, the places where these data usually are."""
+        names = {item.name: self._spelled(getattr(asked, item.name)) for item in fields(asked)}
+        asked = Topics(**names)
+        found = replace(
+            asked, image=self._find_image(asked.image), scan=self._find_scan(asked.scan)
+        )
         return replace(
-            asked,
-            image=self._find_image(asked.image),
-            scan=self._find_scan(asked.scan),
-            camera_info=self._find_camera_info(asked.image, asked.camera_info),
-            tf=self._find_transforms(asked.tf, asked),
-            tf_static=self._find_transforms(asked.tf_static, asked),
+            found,
+            camera_info=self._find_camera_info(found.image, asked.camera_info),
+            tf=self._find_transforms(asked.tf, found),
+            tf_static=self._find_transforms(asked.tf_static, found),
         )
 
     def unread_scans(self, scan: str) -> str:
@@ -110,6 +113,10 @@ class TopicTable:
         """Every topic with type and number, as far as a line holds them."""
         rows = sorted(self._topics.items())
         return listing(f"{name} ({info.type_name}, {info.count})" for name, info in rows)
+
+    def _spelled(self, asked: str) -> str:
+        """With the slash in front that names of recorded topics have."""
+        return asked if asked in self._topics else f"/{asked.lstrip('/')}"
 
     def _find_image(self, asked: str) -> str:
         packed = f"{asked}/compressed"

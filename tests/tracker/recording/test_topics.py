@@ -92,3 +92,9 @@ def test_lasting_transforms_of_a_namespace_come_first(tmp_path, sensor_items):
         assert any("/robot7/tf_static is read instead" in note for note in recording.notes)
     assert events[0].is_static
     assert np.allclose(events[0].transform.translation_m, (0.2, 0.0, 0.3))
+
+
+def test_a_topic_is_found_without_its_slash():
+    there = table(eye__image=IMAGE, eye__scan=SCAN, laser__scan=SCAN)
+    found = there.find(Topics(image="eye/image", scan="laser/scan"))
+    assert (found.image, found.scan) == ("/eye/image", "/laser/scan")
