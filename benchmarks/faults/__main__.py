@@ -134,7 +134,7 @@ def _kill(folder: Path) -> Row:
             changed = [file.name for file, old in before.items() if file.read_bytes() != old]
             complaints = complaints_about(out, ".part") + [f"{name} changed" for name in changed]
             row.judge("; ".join(complaints), f"second replay at {size} bytes")
-    for size in (1_500_000, 6_000_000):
+    for size in (4_000_000, 9_000_000):
         path = folder / "killed.mcap"
         path.unlink(missing_ok=True)
         kill_when_grown(simulate_words(path), path, size)

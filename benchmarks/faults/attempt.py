@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tracker.errors import TrackerError
-from tracker.recording import open_recording
+from tracker.messages.picture_size import MAX_PIXELS
+from tracker.recording import Recording, open_recording
+from tracker.recording.sources import RawMessage
 
 LIMIT_BYTES = 1_500_000_000
 _TIME_S = 60
@@ -54,13 +56,14 @@ def attempt(work: Callable[[], dict[str, Any]]) -> Outcome:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """Everything in a recording, by its raw messages and again by its events."""
+    """Everything in a recording, message by message and again as `events` has it."""
     keys, said = [], ""
     try:
         with open_recording(path, with_truth=True) as recording:
             try:
                 for message in recording._source.messages(set(recording.topics)):
-                    keys.append((message.topic, message.log_ns))
+                    if _is_understood(recording, message):
+                        keys.append((message.topic, message.log_ns))
             except TrackerError as error:
                 said = str(error)
             try:
@@ -73,6 +76,14 @@ def read(path: Path) -> dict[str, Any]:
     except TrackerError as error:
         said = str(error)
     return {"keys": keys, "said": said}
+
+
+def _is_understood(recording: Recording, message: RawMessage) -> bool:
+    try:
+        recording._source.read(message, is_static=False, max_pixels=MAX_PIXELS)
+    except TrackerError:
+        return False
+    return True
 
 
 def _limited(work: Callable[[], dict[str, Any]], told: int) -> None:

@@ -120,17 +120,15 @@ class SqliteSource:
 
     def _listed(self, first: int, last: int) -> Iterator[tuple[int, int, int]]:
         """The rows in a range of numbers; a range that fails is halved, down to single rows."""
-        ranges, rows, failures = [(first, last)], 0, 0
-        most = self._path.stat().st_size // _SMALLEST_ROW_BYTES
-        while ranges and failures < _MOST_FAILURES and rows <= most:
+        ranges, failures = [(first, last)], 0
+        while ranges and failures < _MOST_FAILURES:
             low, high = ranges.pop()
             seen = low - 1
             try:
                 for row, key, log_ns in self._database.execute(_ROWS, (low, high)):
-                    seen, rows = row, rows + 1
-                    if rows > most:  # its pages lead in a circle
-                        self._note("rows come again and again")
-                        break
+                    if not seen < row <= high:  # damaged pages lead back to others
+                        raise sqlite3.DatabaseError("rows are out of order")
+                    seen = row
                     yield row, key, log_ns
             except sqlite3.DatabaseError as error:
                 low, failures = seen + 1, failures + 1
