@@ -32,7 +32,8 @@ _PALM_BREADTH = 0.68
 #: 99 of 100 owners fit better (chi-square of two numbers); beyond, the scan does not show them.
 _MISFIT_MAX = 9.2
 #: Furniture is so much unlikelier than people to raise a hand: two standard deviations (guess).
-_BACKGROUND_MISFIT = 4.0
+#: Something slim alone is furniture more often than a leg, and must fit the hand well.
+_FURNITURE_MISFIT = 4.0
 _WRIST, _THUMB_TIP, _INDEX_ROOT, _MIDDLE_ROOT, _PINKY_ROOT = 0, 4, 5, 9, 17
 
 
@@ -66,8 +67,9 @@ def owners(
     offset = _BESIDE_M * owner_side(hands, rays.roll_rad)
     beside_m = np.where(hands.is_owned, _TORSO_STD_M, _BESIDE_STD_M)[:, None]
     misfit = ((across - offset[:, None]) / beside_m) ** 2 + size_misfit(hands, camera, along)
+    misfit += _FURNITURE_MISFIT * people.is_slim
     beside &= misfit <= _MISFIT_MAX
-    misfit += _BACKGROUND_MISFIT * is_background
+    misfit += _FURNITURE_MISFIT * is_background
     best = np.argmin(np.where(beside, misfit, np.inf), axis=1)
     return np.where(beside.any(axis=1), best, -1)
 

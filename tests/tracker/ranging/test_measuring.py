@@ -169,6 +169,15 @@ def test_a_person_owns_a_hand_rather_than_the_furniture_beside(cast, legs):
     assert positions(found)[0] == pytest.approx([2.0, 0.45], abs=0.08)
 
 
+def test_a_leg_in_trousers_owns_a_hand_rather_than_a_table_s_leg_that_fits_better(cast):
+    post, leg = (2.0, 0.15, 0.025), (2.0, -0.36, 0.07)
+    for circles, owner in (([post, leg], leg), ([post], post)):
+        found = measure_people(
+            hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, cast(circles, beams=1440), Config()
+        )
+        assert positions(found)[0] == pytest.approx(owner[:2], abs=0.08)
+
+
 def test_somebody_far_behind_does_not_own_a_hand_that_is_near(cast, legs):
     scan = cast(legs(5.5, 0.3))
     found = measure_people(hands_toward((1.5, 0.0)), CAMERA, AT_ORIGIN, scan, Config())
