@@ -60,7 +60,7 @@ def draw_floor_plan(
     _draw_paths(axes, history.people.values(), shown)
     for track_id in sorted(shown):
         _draw_person(axes, history.people[track_id], 0.06 * size_m)
-    _draw_key(axes, truth)
+    _draw_key(axes, history.people.values(), truth)
     axes.set_title(
         "Who raised a hand, and where", loc="left", fontsize=13, color=INK, weight="bold", pad=8
     )
@@ -123,10 +123,15 @@ def _draw_person(axes: Axes, person: Person, apart_m: float) -> None:
     color = person_color(person.id)
     pinned: list[FloatArray] = []
     for hand in person.hands[-_HANDS_DRAWN:]:
+        if hand.mean_xy_m is None:
+            _draw_fan(axes, hand, person)
+            continue
         _draw_place(axes, hand, color)
         if all(np.linalg.norm(hand.xy_m - other) > apart_m for other in pinned):
             pinned.append(hand.xy_m)
             _draw_pin(axes, hand.xy_m, color, is_lit=_was_selected(person, hand))
+    if not pinned and not len(person.path.rows):
+        return
     x, y = (pinned[0] if pinned else person.path.rows[-1]).tolist()
     if not pinned:
         axes.scatter(x, y, s=26, c=PAPER, edgecolors=color, linewidths=1.4, zorder=7)
@@ -148,6 +153,22 @@ def _draw_place(axes: Axes, hand: RaisedHand, color: str) -> None:
     axes.scatter(x, y, s=16, c=color, linewidths=0, zorder=8)
 
 
+def _draw_fan(axes: Axes, hand: RaisedHand, person: Person) -> None:
+    """A raised hand of which only the bearing is known: two standard deviations to each side."""
+    color, (x, y) = person_color(person.id), hand.camera_xy_m.tolist()
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    reach_m = 0.45 * min(right - left, top - bottom)
+    middle = np.degrees(hand.bearing_rad)
+    half = max(1.0, 2 * np.degrees(hand.bearing_std_rad))
+    sides = (middle - half, middle + half)
+    axes.add_patch(Wedge((x, y), reach_m, *sides, fc=color, ec="none", alpha=0.2, zorder=6))
+    along = reach_m * np.array([np.cos(hand.bearing_rad), np.sin(hand.bearing_rad)])
+    axes.annotate(
+        f"#{person.id}", (x + along[0], y + along[1]), ha="center", va="center", fontsize=11,
+        weight="bold", color=color, path_effects=_HALO, zorder=12,
+    )  # fmt: skip
+
+
 def _draw_pin(axes: Axes, xy_m: FloatArray, color: str, *, is_lit: bool) -> None:
     """A raised hand on a stem over its place, so that the place itself stays visible."""
     x, y = xy_m.tolist()
@@ -165,10 +186,11 @@ def _draw_pin(axes: Axes, xy_m: FloatArray, color: str, *, is_lit: bool) -> None
     axes.scatter(x, y, s=165, marker=HAND, c=PAPER, linewidths=0, zorder=11.5, transform=above)
 
 
-def _draw_key(axes: Axes, truth: EpisodeReport | None) -> None:
+def _draw_key(axes: Axes, people: Collection[Person], truth: EpisodeReport | None) -> None:
     def dot(label: str, **style: Any) -> Line2D:
         return Line2D([], [], ls="none", label=label, **style)
 
+    hands = [hand for person in people for hand in person.hands]
     handles = [
         dot("hand raised here", marker=HAND, mfc=FADED, mec="none", ms=11),
         dot("and served", marker="o", mfc=LIT, mec="none", ms=11),
@@ -176,6 +198,10 @@ def _draw_key(axes: Axes, truth: EpisodeReport | None) -> None:
         dot("camera, and what it saw", marker="^", mfc=ROBOT, mec="none", ms=8),
         dot("hit by the laser scan", marker="s", mfc=WALL, mec="none", ms=4),
     ]
+    if any(hand.mean_xy_m is None for hand in hands):
+        handles.append(
+            dot("hand raised in this direction", marker=">", mfc="#d8dfe3", mec="none", ms=10)
+        )
     if truth is not None:
         handles.append(dot("where the person really was", marker="o", mfc="none", mec=INK, ms=8))
     key = axes.legend(

@@ -18,6 +18,9 @@ from tracker.report.hit_grid import HitGrid
 from tracker.report.trail import Trail
 
 PEOPLE_KEPT = 1000
+#: A place is told where its standard deviation, along the worst axis, is below; elsewhere the
+#: bearing alone. The default of `pose_max_std_m`.
+PLACED_STD_M = 0.5
 
 
 @dataclass(slots=True, eq=False)
@@ -33,21 +36,40 @@ class RaisedHand(Span):
     """One time that a person's hand was up, as the tracker reported it.
 
     Attributes:
-        xy_m: Shape (2,): where the person was when it was first reported.
+        xy_m: Shape (2,): where the person was when it was first reported, supposed or known.
         covariance_m2: Shape (2, 2): of that place.
+        camera_xy_m: Shape (2,): where the camera was then.
         frames: Processed images with the hand up.
-        sum_xy_m: Shape (2,): sum of the person's positions over these images.
+        placed: Those of them in which the person's place was known.
+        sum_xy_m: Shape (2,): sum of the person's positions over these.
     """
 
     xy_m: FloatArray = field(default_factory=lambda: np.zeros(2))
     covariance_m2: FloatArray = field(default_factory=lambda: np.zeros((2, 2)))
+    camera_xy_m: FloatArray = field(default_factory=lambda: np.zeros(2))
     frames: int = 0
+    placed: int = 0
     sum_xy_m: FloatArray = field(default_factory=lambda: np.zeros(2))
 
     @property
-    def mean_xy_m(self) -> FloatArray:
-        """Shape (2,): where the person was on average while the hand was up."""
-        return self.sum_xy_m / max(1, self.frames)
+    def mean_xy_m(self) -> FloatArray | None:
+        """Shape (2,): where the person was on average while the hand was up; None if unknown."""
+        return np.asarray(self.sum_xy_m / self.placed) if self.placed else None
+
+    @property
+    def bearing_rad(self) -> float:
+        """Direction from the camera in which the hand was first reported, from the x axis."""
+        x, y = self.xy_m - self.camera_xy_m
+        return float(np.arctan2(y, x))
+
+    @property
+    def bearing_std_rad(self) -> float:
+        """Standard deviation of that."""
+        x, y = (self.xy_m - self.camera_xy_m).tolist()
+        range_m = max(1e-6, float(np.hypot(x, y)))
+        across = np.array([-y, x]) / range_m
+        variance_m2 = max(0.0, float(across @ self.covariance_m2 @ across))
+        return float(np.arctan2(variance_m2**0.5, range_m))
 
 
 @dataclass(slots=True, eq=False)
@@ -59,7 +81,7 @@ class Person:
         first_seen_ns: When the track began, tentatively.
         confirmed_ns: When it was first believed.
         last_seen_ns: The last image in which the tracker knew this person.
-        path: Rows of x_m, y_m.
+        path: Rows of x_m, y_m, while the place was known.
         hands: Each time the hand was up, in order of time.
         selected: Each time this person was the one served, in order of time.
     """
@@ -149,6 +171,9 @@ class History:
 
     def _write_people(self, tracks: Tracks) -> None:
         now_ns = tracks.stamp_ns
+        camera = self.camera_path.rows
+        camera_xy_m = camera[-1, :2].copy() if len(camera) else np.zeros(2)
+        is_placed = _worst_std_m(tracks.covariance) <= PLACED_STD_M
         for row, track_id in enumerate(tracks.id.tolist()):
             xy = tracks.mean[row, :2]
             person = self.people.get(track_id)
@@ -156,17 +181,19 @@ class History:
                 began_ns = now_ns - round(float(tracks.age_s[row]) * 1e9)
                 person = self.people[track_id] = Person(track_id, began_ns, now_ns, now_ns)
             person.last_seen_ns = now_ns
-            person.path.append(float(xy[0]), float(xy[1]))
+            if is_placed[row]:
+                person.path.append(float(xy[0]), float(xy[1]))
             if tracks.raised[row]:
                 hand = self._open_hands.get(track_id)
                 if hand is None:
-                    hand = RaisedHand(
-                        now_ns, None, xy.copy(), tracks.covariance[row, :2, :2].copy()
-                    )
+                    covariance = tracks.covariance[row, :2, :2].copy()
+                    hand = RaisedHand(now_ns, None, xy.copy(), covariance, camera_xy_m)
                     self._open_hands[track_id] = hand
                     person.hands.append(hand)
                 hand.frames += 1
-                hand.sum_xy_m = hand.sum_xy_m + xy
+                if is_placed[row]:
+                    hand.placed += 1
+                    hand.sum_xy_m = hand.sum_xy_m + xy
             if track_id == tracks.selected_id and track_id not in self._open_selection:
                 self._open_selection[track_id] = span = Span(now_ns)
                 person.selected.append(span)
@@ -185,3 +212,9 @@ class History:
             span.end_ns = stamp_ns
         self._open_hands.clear()
         self._open_selection.clear()
+
+
+def _worst_std_m(covariance: FloatArray) -> FloatArray:
+    """Shape (N,): standard deviation of positions along their worst axes."""
+    variances = np.linalg.eigvalsh(covariance[:, :2, :2])[:, -1]
+    return np.asarray(np.sqrt(np.maximum(variances, 0.0)))

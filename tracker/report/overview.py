@@ -18,6 +18,8 @@ from tracker.report.timeline import draw_timeline, lanes_of
 
 _WIDTH_IN = 10.0
 _DOTS_PER_INCH = 160
+#: Around a camera that knows directions alone so much is shown.
+_FAN_M, _DIRECTIONS = 2.0, np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
 _MARGIN_M = 0.5
 _WALLS_WITHIN_M = 4.0
 
@@ -62,10 +64,13 @@ def draw_overview(
 
 def _extent(history: History, truth: EpisodeReport | None) -> tuple[FloatArray, FloatArray]:
     """Corners of what is worth showing: people and camera, and the walls around them."""
-    parts = [person.path.rows for person in history.people.values()]
+    people = history.people.values()
+    parts = [person.path.rows for person in people]
     parts.append(history.camera_path.rows[:, :2])
     if truth is not None and truth.episodes:
         parts.append(np.array([row.xy_m for row in truth.episodes]))
+    fans = [hand for person in people for hand in person.hands if hand.mean_xy_m is None]
+    parts += [(hand.camera_xy_m + _FAN_M * _DIRECTIONS) for hand in fans]
     actors = np.vstack([np.zeros((0, 2)), *parts])
     actors = actors[np.all(np.isfinite(actors), axis=-1)]
     if len(actors) == 0:

@@ -35,10 +35,12 @@ def summarize(
         people              one entry per confirmed customer, in the order they came:
             id              as in tracks.csv and output.mcap
             first_seen_s, last_seen_s
-            episodes        [{raised_at_s, lowered_at_s, frames, xy_m, std_m}]; lowered_at_s is
-                            null while the hand is up at the end, xy_m the mean over the episode,
-                            std_m the standard deviation along the worst axis when it began
-            xy_m            mean over all episodes; null without one
+            episodes        [{raised_at_s, lowered_at_s, frames, xy_m, std_m, bearing_deg,
+                            bearing_std_deg}]; lowered_at_s is null while the hand is up at the
+                            end, xy_m the mean over the episode, null where only the bearing is
+                            known, std_m the standard deviation along the worst axis when it
+                            began, bearing_deg from the camera and the x axis
+            xy_m            mean over all episodes; null without one, or without a place
             selected        [{from_s, to_s}]; to_s is null while it lasts
         people_dropped      customers left out to bound memory
         evaluation          `EpisodeReport.as_dict()`, only where the truth was known
@@ -87,27 +89,29 @@ def summary_table(history: History) -> Table:
 
     table = Table(title="Raised hands", title_justify="left")
     table.add_column("person")
-    for name in ("hand up at", "for", "x", "y", "± (95 %)", "served for"):
+    for name in ("hand up at", "for", "bearing", "x", "y", "± (95 %)", "served for"):
         table.add_column(name, justify="right")
     pairs = [(hand, person) for person in history.people.values() for hand in person.hands]
     for hand, person in sorted(pairs, key=lambda pair: pair[0].start_ns):
         served_s = sum(_overlap_s(history, hand, span) for span in person.selected)
-        x, y = hand.mean_xy_m
+        place = hand.mean_xy_m
+        where = ("-", "-", "-")
+        if place is not None:
+            where = (f"{place[0]:.2f} m", f"{place[1]:.2f} m", f"{2 * _std_m(hand):.2f} m")
         table.add_row(
             f"#{person.id}",
             f"{history.seconds(hand.start_ns):.1f} s",
             f"{_length_s(history, hand):.1f} s" + ("" if hand.end_ns else " +"),
-            f"{x:.2f} m",
-            f"{y:.2f} m",
-            f"{2 * _std_m(hand):.2f} m",
+            f"{np.degrees(hand.bearing_rad):.0f}°",
+            *where,
             f"{served_s:.1f} s" if served_s else "-",
         )
     return table
 
 
 def _person(history: History, person: Person) -> dict[str, Any]:
-    frames = sum(hand.frames for hand in person.hands)
-    mean = sum((hand.sum_xy_m for hand in person.hands), np.zeros(2)) / max(1, frames)
+    placed = sum(hand.placed for hand in person.hands)
+    mean = sum((hand.sum_xy_m for hand in person.hands), np.zeros(2)) / max(1, placed)
     return {
         "id": person.id,
         "first_seen_s": _seconds(history, person.first_seen_ns),
@@ -117,12 +121,14 @@ def _person(history: History, person: Person) -> dict[str, Any]:
                 "raised_at_s": _seconds(history, hand.start_ns),
                 "lowered_at_s": _seconds(history, hand.end_ns),
                 "frames": hand.frames,
-                "xy_m": _numbers(hand.mean_xy_m),
+                "xy_m": None if hand.mean_xy_m is None else _numbers(hand.mean_xy_m),
                 "std_m": round(_std_m(hand), 6),
+                "bearing_deg": round(float(np.degrees(hand.bearing_rad)), 3),
+                "bearing_std_deg": round(float(np.degrees(hand.bearing_std_rad)), 3),
             }
             for hand in person.hands
         ],
-        "xy_m": _numbers(mean) if frames else None,
+        "xy_m": _numbers(mean) if placed else None,
         "selected": [
             {"from_s": _seconds(history, span.start_ns), "to_s": _seconds(history, span.end_ns)}
             for span in person.selected

@@ -104,3 +104,20 @@ def test_hands_that_were_not_raised_are_counted_by_their_reason(result_of):
         history.write(replace(result_of(second * 10**9), hands=hands))
     history.write(replace(result_of(3 * 10**9), hands=hands[[]]))
     assert summarize(history)["hands_not_raised"] == {"at_head": 1, "leans": 1}
+
+
+def test_a_hand_without_a_known_place_has_a_bearing_and_no_place(result_of):
+    history = History()
+    for second in range(3):
+        result = result_of(second * 10**9, (1, 2.0, 2.0, True), sensor_pose=np.array([1.0, 1, 0]))
+        unsure = np.zeros((1, 4, 4))
+        unsure[0, :2, :2] = 0.5 + 0.02 * np.array([[1.0, -1.0], [-1.0, 1.0]])  # along the ray
+        history.write(replace(result, tracks=replace(result.tracks, covariance=unsure)))
+    (person,) = summarize(history)["people"]
+    (episode,) = person["episodes"]
+    assert person["xy_m"] is episode["xy_m"] is None
+    assert episode["bearing_deg"] == 45.0
+    assert episode["bearing_std_deg"] == pytest.approx(
+        np.degrees(np.arctan(0.2 / 2**0.5)), abs=1e-3
+    )
+    assert len(history.people[1].path.rows) == 0
