@@ -36,7 +36,7 @@ from nodes.topics import (
     Input,
     InputTopic,
 )
-from tracker.cli.options import VersionOption, help_of
+from tracker.command_help import VersionOption, help_of
 from tracker.config import NODE_NAME, Config
 from tracker.errors import ConfigError, TrackerError
 from tracker.messages import Encoded
@@ -226,7 +226,7 @@ def command(
     """
     from rich.console import Console
 
-    from tracker.cli.progress import compile_tracker_first, fetch_models_if_needed
+    from tracker.progress import compile_tracker_first, fetch_models_if_needed
 
     name = Names(NODE_NAME, namespace, remap or ()).full_node_name
     config, sim_time = _parameters(params_file or [], param or [], name)

@@ -28,3 +28,11 @@ def test_the_shared_part_speaks_no_wire(name):
     assert not {module.split(".")[0] for module in imported} & WIRES
     ours = {module for module in imported if module.startswith("nodes.")}
     assert ours <= {f"nodes.{other}" for other in SHARED}
+
+
+@pytest.mark.parametrize("path", sorted(NODES.rglob("*.py")), ids=lambda path: path.name)
+def test_no_node_needs_the_command_line(path):
+    """`raised-hand play` needs nodes, so that the other way would be a circle."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    modules = [node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    assert not [module for module in modules if module.startswith("tracker.cli")]

@@ -27,6 +27,7 @@ FLOORS = [
     {"report"},
     {"replay_outputs"},
     {"replay"},
+    {"progress", "command_help"},
     {"cli"},
 ]
 FLOOR_OF = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}

@@ -14,10 +14,10 @@ from tracker.cli.evaluate import evaluate_command
 from tracker.cli.live import echo_command, play_command
 from tracker.cli.models import models_app
 from tracker.cli.monte_carlo import monte_carlo_command
-from tracker.cli.options import VersionOption, help_of
 from tracker.cli.replay import replay_command
 from tracker.cli.simulate import simulate_command
 from tracker.cli.tune import tune_command
+from tracker.command_help import VersionOption, help_of
 
 # What OpenCV's video reader has to say (8 is its "fatal"), our own line says better.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "8")

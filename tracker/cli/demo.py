@@ -19,10 +19,10 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.cli.simulate import simulate
 from tracker.errors import RecordingError
 from tracker.outputs import check_inputs_stay
+from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed
 
 #: The demo's pictures go as JPEG: raw they would fill a gigabyte of the reader's disk.
 _DEMO_JPEG_QUALITY = 92

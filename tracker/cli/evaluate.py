@@ -19,10 +19,10 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.config import Config
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
+from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed
 
 _SCENES, _PHOTOS = "Drawn scenes", "Your own photos"
 

@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from tracker.cli.options import complain, console, errors
-from tracker.cli.progress import bar
 from tracker.errors import ConfigError
+from tracker.progress import bar
 from tracker.wording import one_line
 
 

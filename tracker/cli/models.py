@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tracker.cli.options import JsonOption, console, errors, help_of, print_json
+from tracker.cli.options import JsonOption, console, errors, print_json
+from tracker.command_help import help_of
 from tracker.outputs import check_inputs_stay
 
 models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
@@ -30,8 +31,8 @@ def models_fetch(
     For a robot without a network: fetch with --to on another machine, copy the folder, and set the
     environment variable RAISED_HAND_MODELS to it.
     """
-    from tracker.cli.progress import fetch_progress
     from tracker.perception.models import ModelStore, fetch_models
+    from tracker.progress import fetch_progress
 
     store = ModelStore(to)
     check_inputs_stay([source], [row.path for row in store.status()])

@@ -24,9 +24,9 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import compile_tracker_first, counting_bar
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
+from tracker.progress import compile_tracker_first, counting_bar
 
 
 class TableFormat(str, Enum):

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import shlex
 import sys
-from collections.abc import Callable
-from inspect import cleandoc
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +14,6 @@ from rich.console import Console
 from tracker.config import Config
 from tracker.errors import ConfigError
 from tracker.parameter_file import read_assignment
-from tracker.program import print_version
 from tracker.wording import one_line
 
 console = Console()
@@ -33,12 +30,6 @@ ParameterOption = Annotated[
 ReportOption = Annotated[
     Path | None,
     typer.Option(help="A page with plots and tables: one .html file that needs nothing else."),
-]
-VersionOption = Annotated[
-    bool,
-    typer.Option(
-        "--version", help="Print the version and leave.", is_eager=True, callback=print_version
-    ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 
@@ -64,17 +55,6 @@ def parameters_from(
 def parameter_files(config: Path | None, parameters: Config) -> list[Path | None]:
     """The files that parameters come from: their own, and a pose model that they name."""
     return [config, Path(parameters.pose_model) if parameters.pose_model else None]
-
-
-def help_of(command: Callable[..., None]) -> str:
-    """The docstring of a command with each paragraph on one line, for the terminal to wrap.
-
-    Lines that are indented, as examples are, stay as they are.
-    """
-    paragraphs = cleandoc(command.__doc__ or "").split("\n\n")
-    return "\n\n".join(
-        text if text.startswith(" ") else " ".join(text.split("\n")) for text in paragraphs
-    )
 
 
 def command_line() -> str:

@@ -24,9 +24,9 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
+from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.wording import counted, one_line
 
 

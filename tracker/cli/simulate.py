@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from tracker.cli.options import errors, print_files
-from tracker.cli.progress import bar
 from tracker.outputs import check_inputs_stay
+from tracker.progress import bar
 
 
 def simulate_command(

@@ -22,10 +22,10 @@ from tracker.cli.options import (
     print_files,
     print_json,
 )
-from tracker.cli.progress import bar, compile_tracker_first, fetch_models_if_needed, trials_bar
 from tracker.config import Config
 from tracker.errors import ConfigError, RecordingError
 from tracker.outputs import check_inputs_stay
+from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed, trials_bar
 
 if TYPE_CHECKING:
     from tracker.evaluation.tuning_objective import Objective
