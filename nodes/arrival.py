@@ -43,7 +43,7 @@ class Arrival:
             said.append(
                 f"{dropped} datagrams found no room in the receive buffers of listeners on this "
                 "machine; what was not sent again, since one side is best effort, is lost. "
-                f"{SYSCTL}, and start the listeners anew; docs/ros.md says what those of ROS 2 "
+                f"{SYSCTL}, and start the listeners again; docs/ros.md says what those of ROS 2 "
                 "need besides."
             )
         if worst_lag_s >= _LATE_S:

@@ -16,7 +16,7 @@ from rclpy.publisher import Publisher
 
 from tracker.messages import encode
 
-#: How long those who listened may take to be met again; whoever is met gets what is latched.
+#: How long those who listened may take to be met again; each one met gets what is latched.
 _MEETING_S = 1.0
 
 

@@ -10,7 +10,7 @@ def give_back() -> None:
     """Collect what only circles hold, and let the allocator return what is free.
 
     glibc keeps what the threads of the models have freed for threads that never come again: some
-    20 MB each time that models are loaded anew. Other libraries have no such function.
+    20 MB each time that models are loaded again. Other libraries have no such function.
     """
     gc.collect()
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)

@@ -62,7 +62,7 @@ def changed(config: Config, changes: dict[str, Any], *, is_running: bool = True)
     if fixed:
         raise ConfigError(
             f"{', '.join(f'`{name}`' for name in fixed)} cannot change while the node runs; "
-            "start it anew with the new value, or clean a lifecycle node up before."
+            "start it again with the new value, or clean a lifecycle node up before."
         )
     return config.replace(**ours) if ours else config
 

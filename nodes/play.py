@@ -81,12 +81,12 @@ def play(
     """Publish a recording in real time, with the quality of service it was recorded with.
 
     Messages of ROS 2 recordings go out byte by byte as they were recorded, stamps included. What
-    ROS 1 bags, videos and photos show is said anew in ROS 2's messages.
+    ROS 1 bags, videos and photos show is said again in ROS 2's messages.
 
     Args:
         source: Anything that `open_recording` opens.
         rate: How many times as fast as it was recorded.
-        loop: Begin anew at the end, until interrupted.
+        loop: Begin again at the end, until interrupted.
         start_offset_s: Begin so far into the recording; what is latched before is sent at once.
         clock: Also publish the time of recording on /clock, for nodes with use_sim_time.
         best_effort: Offer images, scans and CameraInfo best effort, as drivers do, however they

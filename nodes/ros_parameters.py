@@ -25,7 +25,7 @@ class RosParameters:
     Args:
         node: Made with `automatically_declare_parameters_from_overrides=True`, so that a name
             that is none is found rather than ignored.
-        is_managed: Whether the node may be configured anew while it lives, so that nothing is
+        is_managed: Whether the node may be configured again while it lives, so that nothing is
             read-only for good.
 
     Raises:

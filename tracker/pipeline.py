@@ -315,7 +315,7 @@ class Pipeline:
         return place
 
     def _turn_upright(self, fixed_from_camera: RigidTransform) -> None:
-        """The detector sees pictures in which up is up; it begins anew where the turn changes."""
+        """The detector sees pictures in which up is up; it begins again where the turn changes."""
         turn = upright_turn(fixed_from_camera, self._turn)
         if turn != self._turn:
             self.detector.reset()

@@ -45,7 +45,7 @@ class SocketLoad(NamedTuple):
         """What helps when datagrams are dropped."""
         if self.buffer_bytes >= _WANTED_BYTES:
             return "this machine is too busy to take in so much"
-        return f"{SYSCTL}, then start anew"
+        return f"{SYSCTL}, then start again"
 
 
 def own_sockets() -> SocketLoad:

@@ -17,7 +17,7 @@ from tracker.wording import one_line
 def play_command(
     source: Annotated[Path, typer.Argument(help="rosbag2 folder, .mcap, .db3, .bag, video.")],
     rate: Annotated[float, typer.Option("--rate", "-r", help="Times as fast.")] = 1.0,
-    loop: Annotated[bool, typer.Option("--loop", "-l", help="Begin anew at the end.")] = False,
+    loop: Annotated[bool, typer.Option("--loop", "-l", help="Begin again at the end.")] = False,
     start_offset: Annotated[float, typer.Option(help="Begin so many seconds in.", min=0.0)] = 0.0,
     clock: Annotated[bool, typer.Option("--clock", help="Publish /clock as well.")] = False,
     best_effort: Annotated[

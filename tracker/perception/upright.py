@@ -16,7 +16,7 @@ from tracker.containers import CameraImage, FloatArray, Hands, ImageArray
 from tracker.geometry import RigidTransform
 
 #: Rolls this close to the turn in force change nothing. The raise rules bear a lean, a turn by
-#: other than a quarter costs time and sharpness, and whoever is followed is forgotten when it
+#: other than a quarter costs time and sharpness, and those who are followed are forgotten when it
 #: changes; most robots on a ramp stay below (guess).
 TOLERANCE_DEG = 12.0
 #: A camera that looks this steeply up or down shows nobody upright (guess): what gravity leaves in

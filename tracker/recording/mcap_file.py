@@ -13,7 +13,7 @@ from tracker.messages import Event, decode
 from tracker.recording.blocks import Block, Part, check_count, in_order, placed
 from tracker.recording.damage import Damage
 from tracker.recording.mcap_layout import HEAD, MESSAGE, McapLayout
-from tracker.recording.sources import RawMessage, TopicInfo, topics_of, unreadable
+from tracker.recording.sources import RawMessage, TopicInfo, open_bytes, topics_of, unreadable
 from tracker.recording.unpacking import DamagedError, unpack, unpack_message
 
 #: A log time beyond it is damage; recorders count in signed numbers.
@@ -35,10 +35,7 @@ class McapSource:
     def __init__(self, path: Path) -> None:
         self._path = path
         self.notes: list[str] = []
-        try:
-            self._file = path.open("rb")
-        except OSError as error:
-            raise unreadable(path, error.strerror, "Check its rights.") from error
+        self._file = open_bytes(path)
         self._layout = layout = McapLayout(self._file)
         counts = self._count()
         if not (layout.is_finished or any(counts.values())):

@@ -16,7 +16,7 @@ from tracker.messages.types import MALFORMED, TF_MESSAGE, TF_MESSAGE_ROS1
 from tracker.recording.blocks import Block, Part, check_count, in_order, placed
 from tracker.recording.damage import Damage
 from tracker.recording.ros1_layout import Ros1Layout, read_record
-from tracker.recording.sources import RawMessage, topics_of, unreadable
+from tracker.recording.sources import RawMessage, open_bytes, topics_of, unreadable
 from tracker.recording.unpacking import DamagedError, unpack
 
 _REMEDY = "Is it a ROS 1 bag? If its recording was cut off, repair it with `rosbag reindex`."
@@ -38,10 +38,7 @@ class Ros1Source:
     def __init__(self, path: Path) -> None:
         self._path = path
         self.notes: list[str] = []
-        try:
-            self._file = path.open("rb")
-        except OSError as error:
-            raise unreadable(path, error.strerror, "Check its rights.") from error
+        self._file = open_bytes(path)
         self._layout = Ros1Layout(self._file)
         self._blocks, counts = self._look_through()
         is_bag = self._layout.at(0, len(self._layout.magic)) == self._layout.magic

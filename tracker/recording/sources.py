@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any, BinaryIO, NamedTuple, Protocol
 
 from tracker.errors import RecordingError
 from tracker.messages import Event
@@ -164,6 +164,18 @@ def topics_of(rows: Iterable[tuple[str, str, int]]) -> dict[str, TopicInfo]:
 def seconds_into(log_ns: int, start_ns: int) -> str:
     """A log time for a message to the user: since the recording's beginning."""
     return f"{(log_ns - start_ns) / 1e9:.3f} s"
+
+
+def open_bytes(path: Path) -> BinaryIO:
+    """A file to be read from.
+
+    Raises:
+        RecordingError: It cannot be opened.
+    """
+    try:
+        return path.open("rb")
+    except OSError as error:
+        raise unreadable(path, error.strerror, "Check its rights.") from error
 
 
 def unreadable(path: object, reason: object, remedy: str) -> RecordingError:

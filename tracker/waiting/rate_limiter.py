@@ -29,7 +29,7 @@ class RateLimiter:
         self._last_ns = stamp_ns
         if stamp_ns < self._due_ns - _EARLY_SHARE * self._period_ns:
             return False
-        # After a pause in the stream the due times start anew instead of catching up.
+        # After a pause in the stream the due times start again instead of catching up.
         paused = stamp_ns > self._due_ns + self._period_ns
         self._due_ns = (stamp_ns if paused else self._due_ns) + self._period_ns
         return True
