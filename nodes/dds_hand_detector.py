@@ -222,7 +222,8 @@ def command(
     ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and CYCLONEDDS_URI.
 
     To try it on one machine, in three terminals: raised-hand-dds; raised-hand play recording.mcap;
-    raised-hand echo /hand_raised.
+    raised-hand echo /hand_raised. The demo's recording holds compressed pictures, which are heard
+    with -p image_transport:=compressed.
     """
     from rich.console import Console
 

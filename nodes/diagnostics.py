@@ -24,6 +24,7 @@ from tracker.messages.encode import header
 from tracker.messages.types import build, serialize
 from tracker.notes import NoteKind
 from tracker.scan_use import ScanUse
+from tracker.wording import counted
 
 #: Reports are due so often; with `SILENT_S` a silent input shows within two seconds.
 REPORT_PERIOD_S = 0.5
@@ -262,7 +263,8 @@ class Diagnostics:
         if not is_enabled:
             message = "disabled"
         elif lost:
-            level, message = WARN, f"falls behind: {lost} images lost of late, {message}"
+            level = WARN
+            message = f"falls behind: {counted(lost, 'image')} lost of late, {message}"
         latency, busy = np.array(self._latency_s or [np.nan]), np.array(self._busy_s or [np.nan])
         middle_s = float(np.median(latency))
         values: dict[str, object] = {

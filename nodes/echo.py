@@ -91,8 +91,8 @@ def _text(type_name: str, cdr: bytes) -> str:
 def _plain(value: Any) -> Any:
     """A message as dictionaries, lists and numbers."""
     if hasattr(value, "__msgtype__"):
-        names = [name for name in value.__dataclass_fields__ if name != "__msgtype__"]
-        return {name: _plain(getattr(value, name)) for name in names}
+        _, fields = typestore().fielddefs[value.__msgtype__]  # without the type's constants
+        return {name: _plain(getattr(value, name)) for name, _ in fields}
     if isinstance(value, (list, np.ndarray)):
         shown = [_plain(item) for item in value[:_LONGEST]]
         return [*shown, "..."] if len(value) > _LONGEST else shown

@@ -249,7 +249,7 @@ def _offered(path: Path) -> dict[str, Profile]:
                         first.depth if 0 < first.depth < 2**31 else DEFAULT.depth,
                         "As it was recorded.",
                     )
-    except ReaderError:  # damaged: what can be read of it is played all the same
+    except (ReaderError, OSError):  # damaged: what can be read of it is played all the same
         pass
     return found
 

@@ -22,6 +22,7 @@ class Problems:
         self._scan_use = ScanUse()
         self._parent_of: dict[str, str] = {}
         self._image_clock, self._scan_clock = ClockOffset(), ClockOffset()
+        self._transform_clock = ClockOffset()
 
     def add(self, kind: str, text: str) -> None:
         """Note a fault; of each kind the first text is kept."""
@@ -39,6 +40,8 @@ class Problems:
             self._scan_clock.add(event.stamp_ns, arrived_ns)
         elif isinstance(event, StampedTransform):
             self._note_parent(event.child.lstrip("/"), event.parent.lstrip("/"))
+            if not event.is_static:
+                self._transform_clock.add(event.stamp_ns, arrived_ns)
 
     def note_frame(self, result: FrameResult) -> None:
         """Pick the faults from what the pipeline noted about one image."""
@@ -49,6 +52,11 @@ class Problems:
             elif note.kind.is_remark and note.kind not in self._remarked:
                 self._remarked.add(note.kind)
                 self.remark(note.text)
+
+    @property
+    def transforms_late_s(self) -> float:
+        """How much later transforms were recorded than images of the same stamp."""
+        return self._image_clock.ahead_s() - self._transform_clock.ahead_s()
 
     def note_scan_use(self, max_age_s: float) -> None:
         """Say whether the scans that came were of any use.

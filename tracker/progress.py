@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import isnan
+from time import monotonic
 
 from rich.console import Console
 from rich.progress import (
@@ -20,6 +21,9 @@ from rich.progress import (
 from rich.text import Text
 
 from tracker.wording import counted
+
+#: Without a terminal a line is printed so often, in seconds.
+_SILENCE_S = 10.0
 
 
 def rate(per_s: float) -> str:
@@ -47,7 +51,8 @@ def bar(console: Console, what: str) -> Iterator[Callable[[float, int], None]]:
     )
     if not console.is_terminal:
         console.print(f"{what} ...", highlight=False)
-        yield lambda share, images: None
+        say = _now_and_then(console)
+        yield lambda share, images: say(f"{what} ... {share:.0%}")
         return
     with Progress(*columns, console=console) as progress:
         task = progress.add_task(what, total=1.0, images="")
@@ -73,7 +78,8 @@ def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
     """
     if not console.is_terminal:
         console.print(f"Running {counted(total, what)} ...", highlight=False)
-        yield lambda done: None
+        say = _now_and_then(console)
+        yield lambda done: say(f"{done} of {counted(total, what)} ...")
         return
     columns = (BarColumn(), MofNCompleteColumn(), _RateColumn(f"{what}s"), TimeRemainingColumn())
     with Progress(*columns, console=console, speed_estimate_period=60.0) as progress:
@@ -117,7 +123,8 @@ def trials_bar(
             if scenes == 0:
                 console.print("Judging the best on what no trial has seen ...", highlight=False)
 
-        yield lambda done, best: None, announce
+        say = _now_and_then(console)
+        yield lambda done, best: say(f"{done} of {trials} ... best {best:.4g}"), announce
         return
     with Progress(*columns, console=console) as progress:
         task = progress.add_task("Trying", total=trials, best="")
@@ -131,6 +138,19 @@ def trials_bar(
             progress.update(verdict, completed=scenes, one_line=True)
 
         yield report, judge
+
+
+def _now_and_then(console: Console) -> Callable[[str], None]:
+    """Prints a line where nothing was printed for a while: in a file, bars would be many lines."""
+    last_s = monotonic()
+
+    def say(text: str) -> None:
+        nonlocal last_s
+        if monotonic() - last_s >= _SILENCE_S:
+            last_s = monotonic()
+            console.print(text, highlight=False)
+
+    return say
 
 
 class _RateColumn(ProgressColumn):

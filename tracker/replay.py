@@ -194,6 +194,14 @@ def _note_missing(
     """A bag whose frames never connect gives no pose: a problem of the input."""
     if not recording.is_bag or not history.frames_processed or len(history.camera_path):
         return
+    late_s, wait_s = problems.transforms_late_s, config.transform_wait_s
+    if late_s > wait_s:
+        problems.add(
+            "missing transforms",
+            f"transforms were recorded {late_s:.3f} s later than images of the same stamp, which "
+            f"wait for them {wait_s:g} s at most, so nobody has a pose. Raise transform_wait_s.",
+        )
+        return
     heard = listing(sorted(pipeline.transforms.frames)) or "none"
     problems.add(
         "missing transforms",

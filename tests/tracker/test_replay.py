@@ -175,6 +175,29 @@ def test_a_camera_that_is_half_a_second_late_is_no_problem(tmp_path, write_bag, 
     assert replay(bag, tmp_path / "out", detector=hand_ahead).problems == ()
 
 
+def test_transforms_that_come_after_the_images_have_given_up_are_a_problem_with_the_remedy(
+    tmp_path, write_bag, hand_ahead
+):
+    bag = write_bag(tmp_path / "in.mcap", links=())
+    with RecordingWriter(tmp_path / "late.mcap") as writer:
+        events = []
+        with open_recording(bag) as recording:
+            for log_ns, event in recording.events():
+                topic = "/image_raw" if isinstance(event, CameraImage) else "/scan"
+                events.append((log_ns, topic, event))
+                for child in ("camera_link", "laser"):
+                    link = StampedTransform(log_ns, "map", child, RigidTransform())
+                    events.append((log_ns + 700_000_000, "/tf", link))
+        for log_ns, topic, event in sorted(events, key=lambda row: row[0]):
+            writer.write(topic, log_ns, event)
+    (problem,) = replay(tmp_path / "late.mcap", tmp_path / "out", detector=hand_ahead).problems
+    assert "recorded 0.700 s later" in problem
+    assert "Raise transform_wait_s" in problem
+    waits = Config(transform_wait_s=1.0)
+    late = replay(tmp_path / "late.mcap", tmp_path / "out", waits, detector=hand_ahead)
+    assert late.problems == ()
+
+
 def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap", links=())
     result = replay(bag, tmp_path / "out", detector=hand_ahead)

@@ -72,6 +72,16 @@ def check_is_no_folder(option: str, path: Path | None) -> None:
         raise ConfigError(f"{option} is {path}, a folder; needed is the name of a file.")
 
 
+def check_is_no_file(option: str, path: Path) -> None:
+    """Refuse a file where a folder is to be written, before the work and not after it.
+
+    Raises:
+        ConfigError: It is a file.
+    """
+    if path.exists() and not path.is_dir():
+        raise ConfigError(f"{option} is {path}, a file; needed is the name of a folder.")
+
+
 def print_json(document: Any) -> None:
     """Results for machines, on standard output."""
     sys.stdout.write(json.dumps(document, indent=2) + "\n")

@@ -14,6 +14,7 @@ from tracker.cli.options import (
     JsonOption,
     ParameterOption,
     ReportOption,
+    check_is_no_file,
     check_is_no_folder,
     command_line,
     complain,
@@ -76,6 +77,7 @@ def replay_command(
     parameters = parameters_from(config, param)
     if not source.exists():
         raise ConfigError(f"{source}: there is no such file or folder.")
+    check_is_no_file("--out", out)
     check_is_no_folder("--report", report)
     check_is_no_folder("--save-view", save_view)
     check_inputs_stay(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path, PurePath
@@ -15,6 +16,7 @@ from tracker.recording.ros1_file import Ros1Source
 from tracker.recording.sources import Row, Source, WrappedSource
 from tracker.recording.sqlite_file import SqliteSource
 from tracker.recording.unpacking import unpacked_file
+from tracker.wording import listing
 
 #: What each suffix, in small letters, is read by.
 _SOURCES: dict[str, Callable[[Path], Source]] = {
@@ -26,6 +28,9 @@ _SOURCES: dict[str, Callable[[Path], Source]] = {
 
 #: Suffixes of files that rosbag2 packed as a whole.
 _PACKED = (".zstd", ".zst")
+
+#: With which rosbag2 numbers the parts of one recording.
+_NUMBER = re.compile(r"_\d+$")
 
 #: A metadata.yaml beyond it is none, in bytes.
 _LARGEST_METADATA = 20_000_000
@@ -97,6 +102,12 @@ def _listed(folder: Path) -> tuple[list[Path], list[str]]:
     if listed and all(file.is_file() and is_bag_file(file) for file in listed):
         return listed, []
     state = "cannot be used" if metadata.exists() else "is missing"
+    names_of = {_NUMBER.sub("", file.name.split(".")[0]) for file in there}
+    if len(names_of) > 1:
+        raise RecordingError(
+            f"{folder}: holds several recordings, {listing(file.name for file in there)}; "
+            "name one of them."
+        )
     missing = [file.name for file in listed if not file.is_file()]
     if missing:
         state = f"names {missing[0]}, which is not there"

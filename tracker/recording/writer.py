@@ -134,7 +134,7 @@ class RecordingWriter(GrowingOutput):
     def _create(self, overwrite: bool) -> BinaryIO:
         if self.path.exists() and not overwrite:
             raise RecordingError(
-                f"{self.path}: exists already; choose another name or ask to overwrite it."
+                f"{self.path}: exists already; choose another name, or overwrite it by --force."
             )
         if self.path.exists() and self.path.is_dir() != self._is_folder:
             kind = "a folder" if self._is_folder else "a file that ends in .mcap"

@@ -266,3 +266,12 @@ def test_damage_to_a_bag_costs_a_chunk(bag, harm):
     bag.write_bytes(harm(content, len(content) // 2))
     events, _ = collect(bag)
     assert len(events) >= 50
+
+
+def test_a_folder_of_several_recordings_wants_one_of_them_named(tmp_path, sensor_items):
+    for name in ("kitchen", "hall_0", "hall_1"):
+        with RecordingWriter(tmp_path / f"{name}.mcap") as writer:
+            for topic, log_ns, item in sensor_items(2):
+                writer.write(topic, log_ns, item)
+    with pytest.raises(RecordingError, match=r"several recordings, .*kitchen.mcap.*name one"):
+        open_recording(tmp_path)
