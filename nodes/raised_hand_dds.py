@@ -14,3 +14,7 @@ def _body() -> None:
     from nodes.dds_hand_detector import app
 
     app()
+
+
+if __name__ == "__main__":
+    main()

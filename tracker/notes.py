@@ -17,11 +17,13 @@ class NoteKind(Enum):
     SCAN_WITHOUT_BEAMS = "scan without beams"
     SCAN_WITHOUT_RETURNS = "scan without returns"
     SCAN_NOT_LOCATED = "scan not located"
+    SCAN_TOO_STEEP = "scan too steep"
     SCAN_IN_MILLIMETERS = "scan in millimeters"
     SCAN_IN_DEGREES = "scan in degrees"
     SCAN_THINNED = "scan thinned"
     LASER_MOUNTING_UNKNOWN = "laser mounting unknown"
     CAMERA_INFO_REFUSED = "CameraInfo refused"
+    PICTURE_SIZE_CHANGED = "picture size changed"
     INTRINSICS_SCALED = "intrinsics scaled"
     PRINCIPAL_POINT_OFF = "principal point off the middle"
     BIT_DEPTH_GUESSED = "bit depth guessed"
@@ -44,7 +46,11 @@ class NoteKind(Enum):
 
 
 _FAULTS = frozenset(
-    {NoteKind.CLOCK_JUMPED, NoteKind.SCAN_WITHOUT_BEAMS, NoteKind.CAMERA_INFO_REFUSED}
+    {
+        NoteKind.CLOCK_JUMPED,
+        NoteKind.SCAN_WITHOUT_BEAMS,
+        NoteKind.CAMERA_INFO_REFUSED,
+    }
 )
 _REMARKS = frozenset(
     {
@@ -53,6 +59,7 @@ _REMARKS = frozenset(
         NoteKind.SCAN_THINNED,
         NoteKind.LASER_MOUNTING_UNKNOWN,
         NoteKind.INTRINSICS_SCALED,
+        NoteKind.PICTURE_SIZE_CHANGED,
         NoteKind.PRINCIPAL_POINT_OFF,
         NoteKind.BIT_DEPTH_GUESSED,
         NoteKind.HAND_BEYOND_LENS,
@@ -65,6 +72,7 @@ _WITHOUT_SCAN = frozenset(
         NoteKind.SCAN_WITHOUT_BEAMS,
         NoteKind.SCAN_WITHOUT_RETURNS,
         NoteKind.SCAN_NOT_LOCATED,
+        NoteKind.SCAN_TOO_STEEP,
     }
 )
 

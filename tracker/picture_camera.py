@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+import numpy as np
+
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.errors import ConfigError
@@ -12,6 +14,9 @@ from tracker.notes import Note, NoteKind
 
 #: As image_proc names what it has rectified: image_rect, image_rect_color, rectified/image.
 _RECTIFIED_NAME = re.compile(r"(^|[/_])rect(ified)?([/_]|$)")
+#: Half-way from the principal point to an edge cameras look so far off the axis: from those that
+#: show 2 degrees in all to the widest fisheyes (guess).
+_HALFWAY_DEG = (0.5, 80.0)
 #: The specification's camera.
 _SPECIFIED_SIZE = (640, 480)
 
@@ -63,6 +68,7 @@ class PictureCameras:
         try:
             told = self._as_sent(told)
             camera = told.for_picture(width, height)
+            _check_plausible(camera)
         except ConfigError as error:
             assumed = _assumed(self._configured, width, height)
             refused = Note(
@@ -79,6 +85,30 @@ class PictureCameras:
         """K with the distortion, or P; a camera that is named rectified may send no P."""
         is_named = self._form == "auto" and self._is_named_rectified and told.rectified is not None
         return told.for_rectified() if self._form == "rectified" or is_named else told
+
+
+def _check_plausible(camera: CameraModel) -> None:
+    """Refuse intrinsics that no camera has.
+
+    Raises:
+        ConfigError: The picture would show next to nothing, or half a room in every direction, or
+            the lens would end well inside the picture.
+    """
+    width, height = float(camera.width or 0), float(camera.height or 0)
+    corners = [(0.0, camera.cy), (width, camera.cy), (camera.cx, 0.0), (camera.cx, height)]
+    halfway = [((x + camera.cx) / 2, (y + camera.cy) / 2) for x, y in corners]
+    rays = camera.rays(halfway)
+    off_axis_deg = np.degrees(np.arccos(np.clip(rays[:, 0], -1.0, 1.0)))
+    low, high = _HALFWAY_DEG
+    # Corners beside the principal point of a small region tell nothing.
+    inside = np.linalg.norm(np.subtract(halfway, (camera.cx, camera.cy)), axis=-1) > 1.0
+    if np.all((off_axis_deg[inside] >= low) & (off_axis_deg[inside] <= high)):
+        return
+    raise ConfigError(
+        f"Focal lengths {camera.fx:g} and {camera.fy:g} with distortion "
+        f"{list(camera.distortion)} came for a picture of {camera.width}x{camera.height}; no "
+        "camera looks like that. Calibrate it, in pixels."
+    )
 
 
 def configured_camera(config: Config) -> CameraModel:

@@ -82,6 +82,7 @@ class Pipeline:
         self._last_stamp_ns: int | None = None
         self._camera_locator = CameraLocator()
         self._turn = Turn()
+        self._size: tuple[int, int] | None = None
         self._notes: list[Note] = []
         self._scan_notes: tuple[Note, ...] = ()
 
@@ -182,6 +183,14 @@ class Pipeline:
 
         self.camera, camera_notes = self._cameras.of(image.width, image.height)
         self._notes += camera_notes
+        size = (image.width, image.height)
+        if self._size not in (None, size):
+            self._note(
+                NoteKind.PICTURE_SIZE_CHANGED,
+                f"pictures of {image.width}x{image.height} follow others: hands are followed only "
+                "through pictures of one size",
+            )
+        self._size = size
         if image.remark:
             self._note(NoteKind.BIT_DEPTH_GUESSED, image.remark)
         place = self._locate_camera(image)
@@ -196,7 +205,6 @@ class Pipeline:
         self._notes += scan_notes
         people = scan_people(scan, self.config)
         piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
-        size = (image.width, image.height)
         self._turn_upright(fixed_from_camera)
         if piecewise is not None and place.is_located:
             known_xy_m = np.concatenate([self.tracker.positions_m, people.xy_m])

@@ -7,9 +7,12 @@ from tracker.containers import CameraImage, FrameResult, Scan
 from tracker.notes import NoteKind
 from tracker.scan_use import ScanUse
 from tracker.transforms import StampedTransform
+from tracker.wording import counted
 
 #: A scanner that serves fewer images than this share is worth a word.
-_SERVED_SHARE = 0.5
+_SERVED_SHARE, _NEVER_SHARE = 0.5, 0.1
+#: Transforms that are missing for more images than this share are a fault.
+_LOST_SHARE = 0.1
 
 
 class Problems:
@@ -19,6 +22,8 @@ class Problems:
         self._faults = _Kinds()
         self._remarks = _Kinds()
         self._remarked: set[NoteKind] = set()
+        self._frames = self._unlocated = 0
+        self._first_unlocated = ""
         self._scan_use = ScanUse()
         self._parent_of: dict[str, str] = {}
         self._image_clock, self._scan_clock = ClockOffset(), ClockOffset()
@@ -46,12 +51,29 @@ class Problems:
     def note_frame(self, result: FrameResult) -> None:
         """Pick the faults from what the pipeline noted about one image."""
         self._scan_use.add(result)
+        self._frames += 1
         for note in result.notes:
+            if note.kind is NoteKind.NO_POSE:
+                self._unlocated += 1
+                self._first_unlocated = self._first_unlocated or note.text
             if note.kind.is_fault:
                 self.add(note.kind.value, f"{note} (image at {result.stamp_ns / 1e9:.3f} s)")
             elif note.kind.is_remark and note.kind not in self._remarked:
                 self._remarked.add(note.kind)
                 self.remark(note.text)
+
+    def note_poses(self) -> None:
+        """Say that transforms were missing for a part of the images."""
+        if not self._unlocated:
+            return
+        text = (
+            f"{self._first_unlocated.rstrip('.')} (so in {self._unlocated} of "
+            f"{counted(self._frames, 'image')}: no pose there, and no place in the fixed frame)"
+        )
+        if self._unlocated > _LOST_SHARE * self._frames:
+            self.add("missing transforms", text)
+        else:
+            self.remark(text)
 
     @property
     def transforms_late_s(self) -> float:
@@ -73,13 +95,15 @@ class Problems:
                 "another time. Synchronize the clocks, or replay with --stamps log.",
             )
         use = self._scan_use
-        if use.frames and not use.used:
-            self.add(
-                "scans unused", f"no scan was used in any of {use.frames} images: {use.reason()}"
-            )
+        if use.frames and use.used <= _NEVER_SHARE * use.frames:
+            images = counted(use.frames, "image")
+            few = f"a scan was used in {use.used} of {images} only"
+            text = few if use.used else f"no scan was used in any of {images}"
+            self.add("scans unused", f"{text}: {use.reason()}")
         elif use.used < _SERVED_SHARE * use.frames:
             self.remark(
-                f"a scan was used in {use.used} of {use.frames} images only: {use.reason()}"
+                f"a scan was used in {use.used} of {counted(use.frames, 'image')} only: "
+                f"{use.reason()}"
             )
 
     def _note_parent(self, child: str, parent: str) -> None:

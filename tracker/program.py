@@ -30,6 +30,8 @@ def run_program(name: str, body: Callable[[], None]) -> NoReturn:
         name: The command, first word of what is said.
         body: All of it, with its imports, in which Ctrl-C may come too.
     """
+    if os.environ.get("COLUMNS") == "0":  # a terminal of unknown width; Rich would print nothing
+        del os.environ["COLUMNS"]
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # none of them where it is closed
             stream.reconfigure(errors="backslashreplace")

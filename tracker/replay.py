@@ -192,7 +192,12 @@ def _note_missing(
     config: Config,
 ) -> None:
     """A bag whose frames never connect gives no pose: a problem of the input."""
-    if not recording.is_bag or not history.frames_processed or len(history.camera_path):
+    if not recording.is_bag or not history.frames_processed:
+        return
+    if not recording.has_scans:
+        problems.remark("no scans in the recording: raised hands have a bearing and no range")
+    if len(history.camera_path):
+        problems.note_poses()
         return
     late_s, wait_s = problems.transforms_late_s, config.transform_wait_s
     if late_s > wait_s:

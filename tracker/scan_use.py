@@ -12,6 +12,7 @@ _REMEDIES = {
     "scan_max_age_s",
     NoteKind.SCAN_NOT_LOCATED: "A transform must connect the scanner's frame with fixed_frame at "
     "the scan's stamp",
+    NoteKind.SCAN_TOO_STEEP: "A scanner that sees people turns about a vertical axis",
     NoteKind.SCAN_WITHOUT_BEAMS: "Check the driver's angles",
     NoteKind.SCAN_WITHOUT_RETURNS: "Check the driver's ranges, range_min and range_max",
 }

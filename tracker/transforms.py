@@ -16,6 +16,9 @@ from tracker.containers import check_stamp
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform, interpolate
 
+#: No frame is farther from its parent; beyond, squares lose what they are made of.
+_FARTHEST_M = 1e9
+
 
 @dataclass(frozen=True, slots=True)
 class StampedTransform:
@@ -90,10 +93,13 @@ class TransformBuffer:
         parent, child = sample.parent.lstrip("/"), sample.child.lstrip("/")
         numbers = (*sample.transform.translation_m, *sample.transform.quaternion_xyzw)
         norm = sum(value * value for value in sample.transform.quaternion_xyzw) ** 0.5
-        if not parent or not child or not np.all(np.isfinite(numbers)) or abs(norm - 1.0) > 0.1:
+        far_m = max(abs(value) for value in sample.transform.translation_m)
+        is_placed = np.all(np.isfinite(numbers)) and far_m <= _FARTHEST_M
+        if not parent or not child or not is_placed or abs(norm - 1.0) > 0.1:
             raise TransformError(
-                f"Transform from {child!r} to {parent!r} is unusable: two names, finite numbers "
-                f"and a quaternion of length 1 (here {norm:.3g}) are needed."
+                f"Transform from {child!r} to {parent!r} is unusable: two names, finite numbers, "
+                f"less than {_FARTHEST_M:g} m and a quaternion of length 1 (here {norm:.3g}) are "
+                "needed."
             )
         if parent == child or child in self._chain(parent):
             raise TransformError(

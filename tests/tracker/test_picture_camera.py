@@ -157,3 +157,23 @@ def test_a_topic_named_rectified_without_p_has_k():
     cameras = PictureCameras(Config(), "/camera/image_rect")
     cameras.calibrate(CameraModel(460.0, 460.0, 320.0, 240.0, (), "", 640, 480))
     assert cameras.of(640, 480).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("fx", "fy", "lens"),
+    [(3e8, 3e8, ()), (3.6, 3.6, ()), (1.0, 1.0, ()), (400.0, 400.0, (8e8,) * 5)],
+    ids=["in nanometers", "in millimeters", "none", "a lens without a middle"],
+)
+def test_intrinsics_that_no_camera_has_are_refused(fx, fy, lens):
+    cameras = PictureCameras(Config())
+    cameras.calibrate(CameraModel(fx, fy, 320.0, 240.0, lens, "plumb_bob", 640, 480))
+    camera, notes = cameras.of(640, 480)
+    assert camera.fx == Config().camera_fx
+    assert [note.kind for note in notes] == [NoteKind.CAMERA_INFO_REFUSED]
+
+
+@pytest.mark.parametrize("fx", [180.0, 400.0, 9000.0])
+def test_wide_and_narrow_cameras_are_believed(fx):
+    cameras = PictureCameras(Config())
+    cameras.calibrate(CameraModel(fx, fx, 320.0, 240.0, width=640, height=480))
+    assert cameras.of(640, 480).camera.fx == fx

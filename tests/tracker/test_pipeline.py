@@ -534,3 +534,33 @@ def test_a_scanner_of_millimeters_is_used_and_said(located):
     results = play(located, 4, scan=in_millimeters)
     assert results[-1].customer_pose.position_m == pytest.approx((2.0, 0.0, 0.0), abs=0.15)
     assert {note.kind for note in results[-1].notes} == {NoteKind.SCAN_IN_MILLIMETERS}
+
+
+@pytest.mark.parametrize("roll_deg", [90.0, -90.0])
+def test_a_scanner_on_its_side_is_not_used_and_said(located, roll_deg):
+    located.add_transform(static("map", "laser", rolled(roll_deg)))
+    result = play(located, 1)[0]
+    assert result.scan is None
+    assert NoteKind.SCAN_TOO_STEEP in [note.kind for note in result.notes]
+
+
+def test_a_scan_that_ends_on_the_floor_is_said(located):
+    down = RigidTransform((0.0, 0.0, 0.3), euler_to_quaternion(0.0, np.radians(40.0), 0.0))
+    located.add_transform(static("map", "laser", down))
+
+    def ahead(stamp_ns):
+        return Scan(stamp_ns, "laser", -0.1, 0.01, 0.1, 12.0, np.full(21, 0.46))
+
+    result = play(located, 1, scan=ahead)[0]
+    assert NoteKind.SCAN_WITHOUT_RETURNS in [note.kind for note in result.notes]
+
+
+def test_pictures_of_another_size_are_told(located):
+    results = []
+    for number, side in enumerate((480, 480, 240, 240)):
+        picture = np.zeros((side, side * 4 // 3, 3), np.uint8)
+        results.append(
+            located.process(CameraImage(START_NS + number * PERIOD_NS, "camera_link", picture))
+        )
+    changed = [NoteKind.PICTURE_SIZE_CHANGED in [n.kind for n in r.notes] for r in results]
+    assert changed == [False, False, True, False]

@@ -198,6 +198,26 @@ def test_transforms_that_come_after_the_images_have_given_up_are_a_problem_with_
     assert late.problems == ()
 
 
+def test_transforms_that_stop_are_a_problem_with_their_share(tmp_path, write_bag, hand_ahead):
+    bag = write_bag(tmp_path / "in.mcap", links=())
+    with RecordingWriter(tmp_path / "stop.mcap") as writer, open_recording(bag) as recording:
+        for log_ns, event in recording.events():
+            for child in ("camera_link", "laser"):
+                if log_ns <= START_NS + SECOND_NS:
+                    link = StampedTransform(log_ns, "map", child, RigidTransform())
+                    writer.write("/tf", log_ns, link)
+            topic = "/image_raw" if isinstance(event, CameraImage) else "/scan"
+            writer.write(topic, log_ns, event)
+    result = replay(tmp_path / "stop.mcap", tmp_path / "out", detector=hand_ahead)
+    assert any("in 9 of 20 images" in problem for problem in result.problems)
+
+
+def test_a_recording_without_scans_is_remarked(tmp_path, write_bag, hand_ahead):
+    bag = write_bag(tmp_path / "in.mcap", scan=None)
+    result = replay(bag, tmp_path / "out", detector=hand_ahead)
+    assert any("no scans in the recording" in remark for remark in result.remarks)
+
+
 def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path, write_bag, hand_ahead):
     bag = write_bag(tmp_path / "in.mcap", links=())
     result = replay(bag, tmp_path / "out", detector=hand_ahead)

@@ -6,6 +6,8 @@ before serves as well.
 
 from __future__ import annotations
 
+import numpy as np
+
 from tracker.config import Config
 from tracker.containers import LocatedScan, Scan
 from tracker.errors import TransformError
@@ -18,6 +20,8 @@ from tracker.wording import counted
 
 #: A person is seen by two beams at least.
 _BEAMS_MIN = 2
+#: A scanner tilted beyond this cuts a room from floor to ceiling; walls would look like people.
+_TILT_MAX_DEG = 60.0
 
 
 def choose_scan(
@@ -45,16 +49,13 @@ def choose_scan(
     usable = [scan for scan in timely if len(scan.ranges_m) >= _BEAMS_MIN]
     if not usable:
         return None, [_why_none(scans, timely, stamp_ns, config)]
-    notes = []
-    if not usable[0].valid.any():
-        text = "no beam of the scan has a return"
-        notes.append(Note(NoteKind.SCAN_WITHOUT_RETURNS, text))
+    notes: list[Note] = []
     if not camera.is_located or config.fixed_frame == config.camera_frame:
         fixed_from_laser = _beside_camera(usable[0], transforms, camera, config)
         if fixed_from_laser is None:
             text = "no mounting of the laser: it is taken to be the camera's"
             notes.append(Note(NoteKind.LASER_MOUNTING_UNKNOWN, text))
-        return locate_scan(usable[0], fixed_from_laser or _level(camera)), notes
+        return _judged(locate_scan(usable[0], fixed_from_laser or _level(camera)), config, notes)
     failures = []
     for scan in usable:
         try:
@@ -62,8 +63,30 @@ def choose_scan(
         except TransformError as error:
             failures.append(error)
         else:
-            return locate_scan(scan, begin, _at_end(scan, transforms, config)), notes
+            tilt_deg = float(np.degrees(np.arccos(min(1.0, abs(begin.matrix[2, 2])))))
+            if tilt_deg > _TILT_MAX_DEG:
+                text = (
+                    f"the scanner is tilted by {tilt_deg:.0f} degrees, so that it sees no people"
+                )
+                return None, [*notes, Note(NoteKind.SCAN_TOO_STEEP, text)]
+            located = locate_scan(scan, begin, _at_end(scan, transforms, config))
+            return _judged(located, config, notes)
     return None, [*notes, Note(NoteKind.SCAN_NOT_LOCATED, f"scan unused: {failures[0]}")]
+
+
+def _judged(
+    scan: LocatedScan, config: Config, notes: list[Note]
+) -> tuple[LocatedScan, list[Note]]:
+    """The scan, with a note where it cannot show anybody."""
+    if not np.isfinite(scan.range_m).any():
+        text = "no beam of the scan has a return"
+    elif not scan.valid.any():
+        text = "every beam of the scan ends on the floor or above people's heads"
+    elif not len(scan.returns_m(config.person_range_max_m)):
+        text = f"no beam of the scan ends within {config.person_range_max_m:g} m"
+    else:
+        return scan, notes
+    return scan, [*notes, Note(NoteKind.SCAN_WITHOUT_RETURNS, text)]
 
 
 def _why_none(scans: list[Scan], timely: list[Scan], stamp_ns: int, config: Config) -> Note:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ MAX_PIXELS = 50_000_000
 
 #: JPEG markers that begin a frame, by its coding; and those that stand alone, without a length.
 _JPEG_FRAMES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
+_JPEG_MARKER = re.compile(rb"\xff[^\x00\xff]", re.DOTALL)
 _JPEG_ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
 _TIFF_SIZE_TAGS = {256: "width", 257: "height", 322: "tile_width", 323: "tile_height"}
 
@@ -69,8 +71,10 @@ def check_pixels(size: PictureSize, max_pixels: int, what: str) -> None:
 def _jpeg(data: memoryview) -> PictureSize | None:
     at = 2
     while True:
-        while data[at] != 0xFF or data[at + 1] in (0x00, 0xFF):  # fill bytes, and stray ones
-            at += 1
+        found = _JPEG_MARKER.search(data, at)  # fill bytes and stray ones are passed over
+        if found is None:
+            return None
+        at = found.start()
         marker = data[at + 1]
         if marker in _JPEG_FRAMES:
             height, width = struct.unpack_from(">HH", data, at + 5)

@@ -37,7 +37,12 @@ class FolderLock(Closing):
     def __init__(self, folder: Path) -> None:
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            self._file = (folder / ".lock").open("ab")
+            path = folder / ".lock"
+            if path.exists() and not path.is_file():
+                raise ConfigError(
+                    f"{path}: is no file; it would hold the folder's lock. Remove it."
+                )
+            self._file = path.open("ab")
         except OSError as error:
             raise unwritable(folder, error) from error
         try:

@@ -33,7 +33,11 @@ def check_inputs_stay(inputs: Iterable[Path | None], outputs: Iterable[Path | No
                     "name another place for what is written."
                 )
         for other in written[:number]:
-            if _is_same(output, other):
+            if any(
+                _is_same(one, two)
+                for one in (output, part_of(output))
+                for two in (other, part_of(other))
+            ):
                 raise ConfigError(
                     f"{output}: two outputs would be written there; name another place for one."
                 )

@@ -17,6 +17,8 @@ from tracker.notes import Note, NoteKind
 _METERS_MAX = 300.0
 #: In millimeters nothing is nearer than this: scanners see nothing nearer than two centimeters.
 _MILLIMETERS_MIN = 20.0
+#: In millimeters half of the returns are at least this far; a scanner in centimeters is none.
+_ROOM_MIN_M = 0.6
 #: A range limit from here on is in millimeters, where the ranges are.
 _RANGE_MIN_MAX_M = 1.0
 #: A scan that turns farther than twice is in degrees: even 30 of them would be 4.8 turns.
@@ -79,8 +81,9 @@ def _is_in_millimeters(ranges: FloatArray) -> bool:
     found = _returns(ranges)
     if len(found) < 3:
         return False
-    near, far = np.percentile(found, [5.0, 90.0])
-    return bool(near >= _MILLIMETERS_MIN and far > _METERS_MAX)
+    near, middle, far = np.percentile(found, [5.0, 50.0, 90.0])
+    is_room = middle / 1000.0 >= _ROOM_MIN_M  # in centimeters it would be a cupboard
+    return bool(near >= _MILLIMETERS_MIN and far > _METERS_MAX and is_room)
 
 
 def _from_millimeters(scan: Scan) -> Scan:

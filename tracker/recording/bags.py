@@ -88,7 +88,7 @@ def _open_folder(folder: Path) -> Source:
         except RecordingError as error:
             broken.append(str(error))
     if not parts:
-        reason = broken[0] if broken else f"{folder}: holds no recording"
+        reason = broken[0] if broken else f"{folder}: holds no recording."
         raise RecordingError(f"{reason} `ros2 bag reindex` renews a folder's metadata.yaml.")
     return Row("ROS 2 recording", parts, notes, broken)
 

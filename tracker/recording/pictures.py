@@ -113,6 +113,7 @@ class VideoSource:
         capture = cv2.VideoCapture(str(self._path))
         if not capture.isOpened():
             raise unreadable(self._path, "OpenCV finds no video in it", _VIDEO_REMEDY)
+        capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)  # as phones are held; OpenCV 4.11 does not
         return capture
 
 

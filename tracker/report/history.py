@@ -142,6 +142,8 @@ class History:
         self.frames_processed += 1
         self.frames_raised += int(result.hand_raised)
         for note in result.notes:
+            if note.kind is NoteKind.NEW_FIXED_FRAME:
+                self._forget_places()
             self._notes[note.kind] += 1
             self._first_notes.setdefault(note.kind, note.text)
         self.hands_not_raised.update(result.hands.refusals.keys())
@@ -153,7 +155,8 @@ class History:
             if scan.stamp_ns != self._scan_stamp_ns:  # two images may share one
                 self.walls.add(scan)
             self._scan_stamp_ns = scan.stamp_ns
-        self._write_people(result.tracks[result.tracks.confirmed])
+        is_known = result.sensor_pose is not None or not len(self.camera_path)
+        self._write_people(result.tracks[result.tracks.confirmed], is_known=is_known)
 
     @property
     def notes(self) -> dict[str, int]:
@@ -169,11 +172,12 @@ class History:
         """A stamp as seconds since the start."""
         return (stamp_ns - (self.start_ns or 0)) / 1e9
 
-    def _write_people(self, tracks: Tracks) -> None:
+    def _write_people(self, tracks: Tracks, *, is_known: bool) -> None:
         now_ns = tracks.stamp_ns
         camera = self.camera_path.rows
         camera_xy_m = camera[-1, :2].copy() if len(camera) else np.zeros(2)
         is_placed = _worst_std_m(tracks.covariance) <= PLACED_STD_M
+        is_placed &= is_known
         for row, track_id in enumerate(tracks.id.tolist()):
             xy = tracks.mean[row, :2]
             person = self.people.get(track_id)
@@ -206,6 +210,13 @@ class History:
             gone = min(self.people.values(), key=lambda person: person.last_seen_ns)
             del self.people[gone.id]
             self.people_dropped += 1
+
+    def _forget_places(self) -> None:
+        """Places before the first transform were the camera's, not the fixed frame's."""
+        for person in self.people.values():
+            person.path = Trail(2, capacity=256)
+            for hand in person.hands:
+                hand.placed, hand.sum_xy_m = 0, np.zeros(2)
 
     def _end_all(self, stamp_ns: int) -> None:
         for span in (*self._open_hands.values(), *self._open_selection.values()):

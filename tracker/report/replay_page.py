@@ -161,7 +161,8 @@ def _person_row(history: History, person: Person) -> tuple[str, ...]:
         / 1e9
         for spans in (person.hands, person.selected)
     )
-    x, y = person.path.rows[-1].tolist()
+    places = person.path.rows[-1:].tolist()
+    x, y = (f"{value:.2f} m" for value in places[0]) if places else ("-", "-")
     return (
         f"#{person.id}",
         f"{history.seconds(person.first_seen_ns):.1f} s",
@@ -169,6 +170,6 @@ def _person_row(history: History, person: Person) -> tuple[str, ...]:
         str(len(person.hands)),
         f"{up_s:.1f} s",
         f"{served_s:.1f} s",
-        f"{x:.2f} m",
-        f"{y:.2f} m",
+        x,
+        y,
     )

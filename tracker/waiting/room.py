@@ -15,8 +15,9 @@ from tracker.waiting.stamp_watch import StampWatch, Step
 
 #: Scans remembered; older ones give way.
 _SCANS_KEPT = 40
-#: Transforms of one frame come in any order within this; a step beyond the other is no slow robot.
-_TRANSFORM_LATE_NS, _TRANSFORM_AHEAD_NS = 1_000_000_000, 3_600_000_000_000
+#: Transforms of one frame come in any order within the first. A step ahead beyond the second,
+#: which is less than buffers remember, would outdate all others.
+_TRANSFORM_LATE_NS, _TRANSFORM_AHEAD_NS = 1_000_000_000, 8_000_000_000
 #: Frames whose stamps are watched; beyond these somebody invents names.
 _FRAMES_WATCHED = 1000
 
