@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from enum import Enum
 
-#: Two odd stamps that follow each other within this agree on the time.
-_AGREE_NS = 2_000_000_000
 #: So many late messages in a row are no disorder: the clock was set back by a little.
 _LATE_IN_A_ROW = 100
 
@@ -28,7 +26,8 @@ class StampWatch:
 
     Args:
         late_ns: A step backwards up to this is late, one beyond it odd.
-        ahead_ns: A step forwards beyond this is odd.
+        ahead_ns: A step forwards beyond this is odd; two odd stamps in a row that are no farther
+            apart agree on a new time.
         last_ns: The stamp before the first, if others of the same clock are known.
     """
 
@@ -48,7 +47,7 @@ class StampWatch:
             if self._late_count < _LATE_IN_A_ROW:
                 return Step.LATE
             return self._believe(stamp_ns, Step.JUMPED_BACK)
-        if odd_ns is None or not 0 < stamp_ns - odd_ns <= _AGREE_NS:
+        if odd_ns is None or not 0 < stamp_ns - odd_ns <= self._ahead_ns:
             self._odd_ns = stamp_ns
             return Step.ODD
         return self._believe(stamp_ns, Step.JUMPED_BACK if stamp_ns < newest_ns else Step.ONWARD)

@@ -28,6 +28,10 @@ def test_two_that_agree_on_a_later_time_go_onward():
     assert judged(100, 500.0, 500.1) == [Step.ONWARD, Step.ODD, Step.ONWARD]
 
 
+def test_a_slow_source_is_believed_again_after_a_pause():
+    assert judged(100, 160, 165, 170) == [Step.ONWARD, Step.ODD, Step.ONWARD, Step.ONWARD]
+
+
 def test_odd_stamps_that_do_not_agree_are_never_believed():
     assert judged(100, 7.0, 3.0, 80.0, 1.0, 100.1)[1:] == [Step.ODD] * 4 + [Step.ONWARD]
 
