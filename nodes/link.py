@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tracker.wording import counted
+
 
 class Link(NamedTuple):
     """The connection to who publishes an input.
@@ -26,6 +28,7 @@ class Link(NamedTuple):
         """Why nothing comes, to follow the words that say so."""
         if self.publishers == 0:
             return f"; {self.refusal}" if self.refusal else ", which nobody publishes"
-        count = f"{self.publishers} publisher{'s' if self.publishers > 1 else ''}"
         why = self.loss or self.refusal
-        return f"; {count} connected" + (f", but {why}" if why else "")
+        return f"; {counted(self.publishers, 'publisher')} connected" + (
+            f", but {why}" if why else ""
+        )

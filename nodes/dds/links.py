@@ -41,9 +41,9 @@ class LinkWatch:
         dropped = load.dropped - self._dropped[0]
         if self._images.profile.reliable:
             if self._images.refused.times:
-                self._node.listen_anew(self._images, reliable=False)
+                self._node.listen_again(self._images, reliable=False)
         elif dropped and self._images.is_offered_reliably:
-            self._node.listen_anew(self._images, reliable=True)
+            self._node.listen_again(self._images, reliable=True)
         links = {item: _link(subscription) for item, subscription in self._subscriptions.items()}
         links[Input.IMAGES] = self._with_load(links[Input.IMAGES], load, dropped)
         return links

@@ -129,7 +129,7 @@ class Node(Closing):
         reader = self._read(f"rt{self.names.resolve(name)}", type_name, profile)
         return self._listen(reader, profile, lambda cdr, _: take(cdr))
 
-    def listen_anew(self, subscription: Subscription, *, reliable: bool) -> None:
+    def listen_again(self, subscription: Subscription, *, reliable: bool) -> None:
         """Ask that what is lost is sent again, or no more; only who offers it is heard then.
 
         The thread that spins does it. What comes in that moment may be lost.
