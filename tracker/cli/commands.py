@@ -19,8 +19,9 @@ from tracker.cli.simulate import simulate_command
 from tracker.cli.tune import tune_command
 from tracker.command_help import VersionOption, help_of
 
-# What OpenCV's video reader has to say (8 is its "fatal"), our own line says better.
+# What OpenCV's readers have to say (8 is the video reader's "fatal"), our own line says better.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "8")
+os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")
 
 app = typer.Typer(
     name="raised-hand",
