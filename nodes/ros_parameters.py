@@ -23,8 +23,8 @@ class RosParameters:
     """The parameters of a node; whatever is set is checked at once.
 
     Args:
-        node: Made with `automatically_declare_parameters_from_overrides=True`, so that a name
-            that is none is found rather than ignored.
+        node: Made with `automatically_declare_parameters_from_overrides=True`, so that an
+            unknown name is found rather than ignored.
         is_managed: Whether the node may be configured again while it lives, so that nothing is
             read-only for good.
 

@@ -8,7 +8,7 @@ from tf2_ros import Buffer, TransformException
 
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform
-from tracker.transforms import StampedTransform
+from tracker.transforms import StampedTransform, checked
 
 #: A buffer that ends later than this after a stamp is of the time before a jump.
 _LATER_NS = 1_000_000_000
@@ -34,22 +34,13 @@ class Tf2Transforms:
         Raises:
             TransformError: tf2 would ignore it.
         """
-        x, y, z, w = sample.transform.quaternion_xyzw
-        norm = (x * x + y * y + z * z + w * w) ** 0.5
-        parent, child = sample.parent.lstrip("/"), sample.child.lstrip("/")
-        numbers = (*sample.transform.translation_m, norm)
-        is_finite = all(abs(value) < float("inf") for value in numbers)
-        if not parent or not child or parent == child or not is_finite or abs(norm - 1.0) > 0.1:
-            raise TransformError(
-                f"Transform from {child!r} to {parent!r} is unusable: two names, finite numbers "
-                f"and a quaternion of length 1 (here {norm:.3g}) are needed."
-            )
+        sample = checked(sample)
         message = TransformStamped()
         message.header.stamp = Time(nanoseconds=sample.stamp_ns).to_msg()
-        message.header.frame_id, message.child_frame_id = parent, child
+        message.header.frame_id, message.child_frame_id = sample.parent, sample.child
         at, turn = message.transform.translation, message.transform.rotation
         at.x, at.y, at.z = map(float, sample.transform.translation_m)
-        turn.x, turn.y, turn.z, turn.w = x / norm, y / norm, z / norm, w / norm
+        turn.x, turn.y, turn.z, turn.w = sample.transform.quaternion_xyzw
         if sample.is_static:
             self._buffer.set_transform_static(message, "hand_detector")
         else:

@@ -78,6 +78,18 @@ def rotation_matrix(quaternion_xyzw: ArrayLike) -> FloatArray:
     )
 
 
+def worst_std(covariance: FloatArray) -> FloatArray:
+    """Standard deviation along the worst axis of covariances.
+
+    Args:
+        covariance: Shape (..., 2, 2).
+
+    Returns:
+        Shape (...), in the root of their unit.
+    """
+    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(covariance)[..., -1], 0.0)))
+
+
 @dataclass(frozen=True, slots=True)
 class RigidTransform:
     """Takes points of one frame to another: `point_map = map_from_camera.apply(point_camera)`.

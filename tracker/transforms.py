@@ -7,7 +7,7 @@ interpolates like tf2 (translations linearly, rotations by slerp) and never extr
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right, insort
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -90,23 +90,10 @@ class TransformBuffer:
             ClockError: Its stamp is negative.
         """
         check_stamp(sample.stamp_ns)
-        parent, child = sample.parent.lstrip("/"), sample.child.lstrip("/")
-        numbers = (*sample.transform.translation_m, *sample.transform.quaternion_xyzw)
-        norm = sum(value * value for value in sample.transform.quaternion_xyzw) ** 0.5
-        far_m = max(abs(value) for value in sample.transform.translation_m)
-        is_placed = np.all(np.isfinite(numbers)) and far_m <= _FARTHEST_M
-        if not parent or not child or not is_placed or abs(norm - 1.0) > 0.1:
-            raise TransformError(
-                f"Transform from {child!r} to {parent!r} is unusable: two names, finite numbers, "
-                f"less than {_FARTHEST_M:g} m and a quaternion of length 1 (here {norm:.3g}) are "
-                "needed."
-            )
-        if parent == child or child in self._chain(parent):
-            raise TransformError(
-                f"Transform from {child!r} to {parent!r} closes a circle of frames."
-            )
-        x, y, z, w = (value / norm for value in sample.transform.quaternion_xyzw)
-        transform = RigidTransform(sample.transform.translation_m, (x, y, z, w))
+        sample = checked(sample)
+        parent, child, transform = sample.parent, sample.child, sample.transform
+        if child in self._chain(parent):
+            raise _circle(child, parent)
         if self._parent.get(child, parent) != parent:
             self._moving.pop(child, None)  # those were relative to another frame
         self._parent[child] = parent
@@ -211,6 +198,35 @@ class TransformBuffer:
         if missing:
             return f"No transform names the frame {' or '.join(missing)}; heard of: {heard}."
         return f"Frames {source!r} and {target!r} are not connected; heard of: {heard}."
+
+
+def checked(sample: StampedTransform) -> StampedTransform:
+    """The transform with plain names and a quaternion of length 1.
+
+    Raises:
+        TransformError: It has no two names, a number that is not finite or too large, or no
+            rotation; or both names are the same.
+    """
+    parent, child = sample.parent.lstrip("/"), sample.child.lstrip("/")
+    place_m, quaternion = sample.transform.translation_m, sample.transform.quaternion_xyzw
+    norm = sum(value * value for value in quaternion) ** 0.5
+    is_finite = np.all(np.isfinite((*place_m, *quaternion)))
+    is_near = max(abs(value) for value in place_m) <= _FARTHEST_M
+    if not parent or not child or not is_finite or not is_near or abs(norm - 1.0) > 0.1:
+        raise TransformError(
+            f"Transform from {child!r} to {parent!r} is unusable: two names, finite numbers, "
+            f"less than {_FARTHEST_M:g} m and a quaternion of length 1 (here {norm:.3g}) are "
+            "needed."
+        )
+    if parent == child:
+        raise _circle(child, parent)
+    x, y, z, w = (value / norm for value in quaternion)
+    transform = RigidTransform(place_m, (x, y, z, w))
+    return replace(sample, parent=parent, child=child, transform=transform)
+
+
+def _circle(child: str, parent: str) -> TransformError:
+    return TransformError(f"Transform from {child!r} to {parent!r} closes a circle of frames.")
 
 
 def _stamp(sample: tuple[int, RigidTransform]) -> int:

@@ -70,7 +70,7 @@ def tune(
         judged: Told how far the verdict is.
 
     Raises:
-        ConfigError: Optuna is not there, the storage is none or holds another search, or the
+        ConfigError: Optuna is not there, the storage is unknown or holds another search, or the
             objective cannot judge a parameter.
         RecordingError: The storage cannot be read or written.
     """

@@ -17,7 +17,7 @@ from tracker.notes import Note, NoteKind
 _METERS_MAX = 300.0
 #: In millimeters nothing is nearer than this: scanners see nothing nearer than two centimeters.
 _MILLIMETERS_MIN = 20.0
-#: In millimeters half of the returns are at least this far; a scanner in centimeters is none.
+#: In millimeters half of the returns are at least this far; one in centimeters has less.
 _ROOM_MIN_M = 0.6
 #: A range limit from here on is in millimeters, where the ranges are.
 _RANGE_MIN_MAX_M = 1.0

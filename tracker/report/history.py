@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tracker.containers import FloatArray, FrameResult, Refusal, Tracks
+from tracker.geometry import worst_std
 from tracker.notes import NoteKind
 from tracker.report.hit_grid import HitGrid
 from tracker.report.trail import Trail
@@ -176,7 +177,7 @@ class History:
         now_ns = tracks.stamp_ns
         camera = self.camera_path.rows
         camera_xy_m = camera[-1, :2].copy() if len(camera) else np.zeros(2)
-        is_placed = _worst_std_m(tracks.covariance) <= PLACED_STD_M
+        is_placed = worst_std(tracks.covariance[:, :2, :2]) <= PLACED_STD_M
         is_placed &= is_known
         for row, track_id in enumerate(tracks.id.tolist()):
             xy = tracks.mean[row, :2]
@@ -223,9 +224,3 @@ class History:
             span.end_ns = stamp_ns
         self._open_hands.clear()
         self._open_selection.clear()
-
-
-def _worst_std_m(covariance: FloatArray) -> FloatArray:
-    """Shape (N,): standard deviation of positions along their worst axes."""
-    variances = np.linalg.eigvalsh(covariance[:, :2, :2])[:, -1]
-    return np.asarray(np.sqrt(np.maximum(variances, 0.0)))

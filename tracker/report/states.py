@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from tracker.config import Config
 from tracker.containers import FloatArray, FrameResult
+from tracker.geometry import worst_std
 from tracker.report.trail import Trail
 
 _PEOPLE_KEPT = 100
@@ -84,7 +83,7 @@ class States:
         at_s = (result.stamp_ns - self._start_ns) / 1e9
         tracks = result.tracks[result.tracks.confirmed]
         covariances = tracks.covariance[:, :2, :2]
-        worst_m = np.sqrt(np.linalg.eigvalsh(covariances)[:, -1])
+        worst_m = worst_std(covariances)
         is_fresh = (tracks.unseen_s <= self._config.pose_max_age_s) & (
             worst_m <= self._config.pose_max_std_m
         )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tracker.evaluation.episode_report import EpisodeReport
+from tracker.geometry import worst_std
 from tracker.outputs import writing_into
 from tracker.report.history import History, Person, RaisedHand, Span
 
@@ -145,7 +146,7 @@ def _numbers(values: np.ndarray) -> list[float]:
 
 
 def _std_m(hand: RaisedHand) -> float:
-    return float(np.sqrt(max(0.0, np.linalg.eigvalsh(hand.covariance_m2)[-1])))
+    return float(worst_std(hand.covariance_m2))
 
 
 def _stop_ns(history: History, span: Span) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import FloatArray, Pose, Tracks
-from tracker.geometry import euler_to_quaternion, facing_yaw
+from tracker.geometry import euler_to_quaternion, facing_yaw, worst_std
 
 
 def customer_pose(
@@ -27,7 +27,7 @@ def customer_pose(
     if row is None or tracks.unseen_s[row] > config.pose_max_age_s:
         return None
     covariance = tracks.covariance[row, :2, :2]
-    if np.sqrt(np.linalg.eigvalsh(covariance)[-1]) > config.pose_max_std_m:
+    if worst_std(covariance) > config.pose_max_std_m:
         return None
     x, y = tracks.mean[row, :2]
     yaw = facing_yaw(x - robot_xy_m[0], y - robot_xy_m[1])
