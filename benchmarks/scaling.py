@@ -24,10 +24,10 @@ import psutil
 from rich.console import Console
 from rich.table import Table
 
-from tracker.evaluation.cluster import dask_cluster
-from tracker.evaluation.monte_carlo import monte_carlo
-from tracker.evaluation.study import Study
-from tracker.evaluation.workers import Processes, run_in_order
+from tracker.evaluation.studies.cluster import dask_cluster
+from tracker.evaluation.studies.monte_carlo import monte_carlo
+from tracker.evaluation.studies.study import Study
+from tracker.evaluation.studies.workers import Processes, run_in_order
 
 SCENARIOS = ("people", "known-people", "outliers")
 EMPTY_UNITS = 1000

@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tracker import Config
-from tracker.evaluation.annotated_scans import read_annotated_scans, score_clusters
+from tracker.evaluation.recordings.annotated_scans import read_annotated_scans, score_clusters
 from tracker.geometry import RigidTransform
 from tracker.ranging import Background, locate_scan, scan_people
 

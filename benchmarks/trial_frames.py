@@ -34,7 +34,7 @@ from stonesoup.types.state import GaussianState
 from stonesoup.types.track import Track
 
 from tracker import Config, Measurements, PersonTracker
-from tracker.evaluation.batched_tracker import BatchedTracker
+from tracker.evaluation.trials.batched_tracker import BatchedTracker
 from tracker.tracking.filter import update
 from tracker.tracking.motion import predict
 

@@ -15,8 +15,8 @@ from pathlib import Path
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Scan, Truth
 from tracker.errors import ClockError, OutputError, RecordingError, TransformError
-from tracker.evaluation.episode_report import EpisodeReport
-from tracker.evaluation.episodes import EpisodeEvaluation
+from tracker.evaluation.metrics.episode_report import EpisodeReport
+from tracker.evaluation.metrics.episodes import EpisodeEvaluation
 from tracker.messages import Event
 from tracker.outputs import FolderLock, check_inputs_stay
 from tracker.perception.detector import HandDetector

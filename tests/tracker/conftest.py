@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tracker import CameraImage, Config, Hands, Scan
-from tracker.evaluation.detection_episode import CallerScore, FalseRaise
-from tracker.evaluation.detection_scenes import FACTORS, Conditions
-from tracker.evaluation.detection_study import DetectionStudy, Episode, Minute
+from tracker.evaluation.detection.episode import CallerScore, FalseRaise
+from tracker.evaluation.detection.scenes import FACTORS, Conditions
+from tracker.evaluation.detection.study import DetectionStudy, Episode, Minute
 from tracker.geometry import RigidTransform
 from tracker.recording import RecordingWriter
 from tracker.transforms import StampedTransform

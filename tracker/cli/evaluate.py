@@ -131,8 +131,8 @@ def _evaluate_scenes(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    from tracker.evaluation.detection_figures import detection_as_dict
-    from tracker.evaluation.detection_study import study_detection
+    from tracker.evaluation.detection.figures import detection_as_dict
+    from tracker.evaluation.detection.study import study_detection
     from tracker.report.detection_table import false_table, recall_table, write_detection
 
     fetch_models_if_needed(errors)
@@ -161,8 +161,8 @@ def _evaluate_scenes(
 def _evaluate_photos(
     folder: Path, config: Config, looks: int, out: Path | None, as_json: bool
 ) -> None:
-    from tracker.evaluation.photo_labels import read_labels
-    from tracker.evaluation.photo_study import photos_as_dict, study_photos
+    from tracker.evaluation.detection.photo_labels import read_labels
+    from tracker.evaluation.detection.photo_study import photos_as_dict, study_photos
     from tracker.perception import open_detector
     from tracker.report.photo_table import photo_tables, write_photos
 

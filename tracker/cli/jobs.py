@@ -42,7 +42,7 @@ def open_executor(executor: str, jobs: int, units: int) -> Iterator[Executor | N
         with processes(jobs, units) as pool:
             yield pool
     elif "://" in executor:
-        from tracker.evaluation.cluster import dask_cluster
+        from tracker.evaluation.studies.cluster import dask_cluster
 
         with dask_cluster(executor) as cluster:
             yield cluster
@@ -60,7 +60,7 @@ def processes(jobs: int, units: int) -> Iterator[Executor | None]:
         jobs: How many; 0 is one per core.
         units: Pieces of work; more processes than that are of no use.
     """
-    from tracker.evaluation.workers import Processes
+    from tracker.evaluation.studies.workers import Processes
 
     jobs = workers(jobs, units)
     if jobs <= 1:

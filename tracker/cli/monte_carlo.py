@@ -74,15 +74,19 @@ def monte_carlo_command(
     others run the whole tracker and print GOSPA, identity switches, times to raise and more. The
     scenario's own settings hold unless --config or -p says otherwise.
     """
-    from tracker.evaluation.monte_carlo import find_scenario, monte_carlo, worthwhile_workers
-    from tracker.evaluation.scenario import (
+    from tracker.evaluation.studies.monte_carlo import (
+        find_scenario,
+        monte_carlo,
+        worthwhile_workers,
+    )
+    from tracker.evaluation.studies.study import study_as_dict
+    from tracker.evaluation.studies.study_log import LOG_FILES
+    from tracker.evaluation.trials.scenario import (
         SCENARIOS,
         PeopleScenario,
         ScanScenario,
         default_config,
     )
-    from tracker.evaluation.study import study_as_dict
-    from tracker.evaluation.study_log import LOG_FILES
     from tracker.report.study_page import study_page
     from tracker.report.study_table import STUDY_FILES, study_table, write_parquet, write_study
 

@@ -28,7 +28,7 @@ from tracker.outputs import check_inputs_stay
 from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed, trials_bar
 
 if TYPE_CHECKING:
-    from tracker.evaluation.tuning_objective import Objective
+    from tracker.evaluation.tuning.objective import Objective
     from tracker.recording import Topics
 
 _SCENES, _RECORDINGS = "Scenarios", "Recordings"
@@ -114,10 +114,10 @@ def tune_command(
     Stop it with Ctrl-C; the same command goes on where it was. best.yaml is a
     whole parameter file: raised-hand replay -c tuning/best.yaml, or the node's.
     """
-    from tracker.evaluation.scenario import SCENARIOS, default_config
-    from tracker.evaluation.tuning import check_optuna, tune
-    from tracker.evaluation.tuning_objective import scenario_objective
-    from tracker.evaluation.tuning_space import DEFAULT_KINDS, choose_parameters
+    from tracker.evaluation.trials.scenario import SCENARIOS, default_config
+    from tracker.evaluation.tuning.objective import scenario_objective
+    from tracker.evaluation.tuning.search import check_optuna, tune
+    from tracker.evaluation.tuning.space import DEFAULT_KINDS, choose_parameters
     from tracker.recording import Topics
     from tracker.report.tuning_page import tuning_page
     from tracker.report.tuning_table import (
@@ -188,7 +188,7 @@ def tune_command(
     if report is not None:
         written = (*written, tuning_page(tuning, command=command_line()).write(report))
     if as_json:
-        from tracker.evaluation.tuning_result import tuning_as_dict
+        from tracker.evaluation.tuning.result import tuning_as_dict
 
         print_json(tuning_as_dict(tuning))
         return
@@ -198,8 +198,8 @@ def tune_command(
 
 
 def _recording(source: Path, base: Config, topics: Topics) -> Objective:
-    from tracker.evaluation.tracker_steps import recorded_steps
-    from tracker.evaluation.tuning_objective import RecordingObjective
+    from tracker.evaluation.recordings.tracker_steps import recorded_steps
+    from tracker.evaluation.tuning.objective import RecordingObjective
 
     fetch_models_if_needed(errors)
     with bar(errors, "Measuring") as progress:
@@ -210,8 +210,8 @@ def _recording(source: Path, base: Config, topics: Topics) -> Objective:
 def _list() -> None:
     from rich.table import Table
 
-    from tracker.evaluation.scenario import SCENARIOS, PeopleScenario, ScanScenario
-    from tracker.evaluation.tuning_space import tunable
+    from tracker.evaluation.trials.scenario import SCENARIOS, PeopleScenario, ScanScenario
+    from tracker.evaluation.tuning.space import tunable
 
     for name, item in SCENARIOS.items():
         if isinstance(item, (PeopleScenario, ScanScenario)):

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from tracker.containers import ImageArray
-from tracker.evaluation.photo_study import JudgedPhoto, PhotoStudy
+from tracker.evaluation.detection.photo_study import JudgedPhoto, PhotoStudy
 from tracker.perception.drawing import FINGERS
 from tracker.recording.pictures import read_photo
 from tracker.report.palette import INK, LIT, PAPER, PERSON_COLORS, as_bgr

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tracker.evaluation.detection_episode import FRAMES_TO_FIND
-from tracker.evaluation.detection_figures import (
+from tracker.evaluation.detection.episode import FRAMES_TO_FIND
+from tracker.evaluation.detection.figures import (
     FalseRate,
     Recall,
     false_rate,
@@ -18,7 +18,7 @@ from tracker.evaluation.detection_figures import (
     recall_by_factor,
     recall_of,
 )
-from tracker.evaluation.detection_study import DetectionStudy
+from tracker.evaluation.detection.study import DetectionStudy
 from tracker.report.palette import FADED, INK, PAPER, PERSON_COLORS
 
 _RECALL, _FALSE = PERSON_COLORS[0], PERSON_COLORS[1]

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tracker.evaluation.detection_episode import FRAMES_TO_FIND
-from tracker.evaluation.detection_figures import (
+from tracker.evaluation.detection.episode import FRAMES_TO_FIND
+from tracker.evaluation.detection.figures import (
     FalseRate,
     Recall,
     detection_as_dict,
@@ -21,7 +21,7 @@ from tracker.evaluation.detection_figures import (
     recall_by_factor,
     recall_of,
 )
-from tracker.evaluation.detection_study import DetectionStudy
+from tracker.evaluation.detection.study import DetectionStudy
 from tracker.outputs import writing_into
 from tracker.report.detection_plot import draw_detection
 from tracker.wording import counted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tracker.evaluation.episode_report import EpisodeReport
+from tracker.evaluation.metrics.episode_report import EpisodeReport
 
 if TYPE_CHECKING:
     from rich.table import Table

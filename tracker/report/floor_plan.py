@@ -16,7 +16,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import ScaledTranslation
 
 from tracker.containers import FloatArray
-from tracker.evaluation.episode_report import EpisodeReport
+from tracker.evaluation.metrics.episode_report import EpisodeReport
 from tracker.report.hand_icon import HAND
 from tracker.report.history import History, Person, RaisedHand
 from tracker.report.palette import FADED, INK, LIT, PAPER, ROBOT, WALL, person_color

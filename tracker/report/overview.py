@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tracker.containers import FloatArray
-from tracker.evaluation.episode_report import EpisodeReport
+from tracker.evaluation.metrics.episode_report import EpisodeReport
 from tracker.outputs import writing_into
 from tracker.report.birdseye import FIELD_OF_VIEW_RAD
 from tracker.report.floor_plan import draw_floor_plan

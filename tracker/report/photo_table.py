@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tracker.evaluation.photo_study import PhotoStudy, Share, photos_as_dict
+from tracker.evaluation.detection.photo_study import PhotoStudy, Share, photos_as_dict
 from tracker.outputs import writing_into
 from tracker.report.contact_sheet import draw_contact_sheet
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult
-from tracker.evaluation.episode_report import EpisodeReport
+from tracker.evaluation.metrics.episode_report import EpisodeReport
 from tracker.report.episode_table import episode_table
 from tracker.report.history import History, Person
 from tracker.report.moments import Moments

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tracker.evaluation.study import FilterStudy, PeopleStudy, Study
+from tracker.evaluation.studies.study import FilterStudy, PeopleStudy, Study
 from tracker.report.page import Facts, Page, Part, Picture, Section, Table, Text
 from tracker.report.palette import PAPER
 from tracker.report.provenance import provenance_section, settings_section
@@ -124,7 +124,7 @@ def _worst(study: Study) -> tuple[Part, ...]:
     table = Table(columns, rows, numeric=frozenset(range(len(columns))))
     again = (
         "Trial i of a seed is the same in every study. From Python, with the study's scenario and "
-        f"config: tracker.evaluation.monte_carlo.run_unit(scenario, config, {study.seed}, "
+        f"config: tracker.evaluation.studies.monte_carlo.run_unit(scenario, config, {study.seed}, "
         f"{worst[0]}, 1) repeats the first of these alone."
     )
     return table, Text((again,))

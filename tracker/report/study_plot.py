@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tracker.containers import FloatArray
-from tracker.evaluation.consistency import mean_bounds
-from tracker.evaluation.study import FilterStudy, KnownPeopleStudy, PeopleStudy, Study
+from tracker.evaluation.metrics.consistency import mean_bounds
+from tracker.evaluation.studies.study import FilterStudy, KnownPeopleStudy, PeopleStudy, Study
 from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
 from tracker.wording import counted
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tracker.evaluation.study import Figure, Study, study_as_dict
+from tracker.evaluation.studies.study import Figure, Study, study_as_dict
 from tracker.outputs import writing_into
 from tracker.report.study_plot import draw_study
 from tracker.wording import counted

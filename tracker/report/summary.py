@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tracker.evaluation.episode_report import EpisodeReport
+from tracker.evaluation.metrics.episode_report import EpisodeReport
 from tracker.geometry import worst_std
 from tracker.outputs import writing_into
 from tracker.report.history import History, Person, RaisedHand, Span

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from tracker.evaluation.episode_report import EpisodeReport, EpisodeRow
+from tracker.evaluation.metrics.episode_report import EpisodeReport, EpisodeRow
 from tracker.report.history import History, Person
 from tracker.report.palette import FADED, INK, LIT, PAPER, person_color
 

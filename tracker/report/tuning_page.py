@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracker.evaluation.tuning_result import Tuning
+from tracker.evaluation.tuning.result import Tuning
 from tracker.report.page import Facts, Page, Picture, Section, Table, Text
 from tracker.report.provenance import provenance_section, settings_section
 from tracker.report.tuning_plot import tuning_figure

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from tracker.config import parameter_extra, parameter_search
-from tracker.evaluation.tuning_result import Tuning
+from tracker.evaluation.tuning.result import Tuning
 from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
 from tracker.wording import counted
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tracker.config_file import parameter_yaml
-from tracker.evaluation.tuning_result import Tuning, tuning_as_dict
+from tracker.evaluation.tuning.result import Tuning, tuning_as_dict
 from tracker.outputs import writing_into
 from tracker.report.tuning_plot import draw_tuning
 from tracker.wording import counted

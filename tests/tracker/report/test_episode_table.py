@@ -2,7 +2,7 @@ import io
 
 from rich.console import Console
 
-from tracker.evaluation.episode_report import EpisodeReport, EpisodeRow, InventedRow
+from tracker.evaluation.metrics.episode_report import EpisodeReport, EpisodeRow, InventedRow
 from tracker.report.episode_table import episode_table
 
 SECOND = 10**9

@@ -5,7 +5,7 @@ from matplotlib.colors import to_rgb
 
 from tracker.containers import Truth
 from tracker.errors import RecordingError
-from tracker.evaluation.episodes import EpisodeEvaluation
+from tracker.evaluation.metrics.episodes import EpisodeEvaluation
 from tracker.report.history import History
 from tracker.report.overview import draw_overview
 from tracker.report.palette import LIT, person_color

@@ -3,8 +3,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from tracker.evaluation.monte_carlo import monte_carlo
-from tracker.evaluation.scenario import SCENARIOS
+from tracker.evaluation.studies.monte_carlo import monte_carlo
+from tracker.evaluation.trials.scenario import SCENARIOS
 from tracker.report.study_page import study_page
 
 

@@ -7,8 +7,8 @@ import pytest
 from rich.console import Console
 
 from tracker.errors import RecordingError
-from tracker.evaluation.monte_carlo import monte_carlo
-from tracker.evaluation.scenario import SCENARIOS
+from tracker.evaluation.studies.monte_carlo import monte_carlo
+from tracker.evaluation.trials.scenario import SCENARIOS
 from tracker.report.study_table import study_table, write_parquet, write_study
 
 

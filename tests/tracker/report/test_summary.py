@@ -8,7 +8,7 @@ from rich.console import Console
 
 from tracker.containers import Hands, Refusal
 from tracker.errors import RecordingError
-from tracker.evaluation.episodes import EpisodeEvaluation
+from tracker.evaluation.metrics.episodes import EpisodeEvaluation
 from tracker.notes import Note, NoteKind
 from tracker.report.history import History
 from tracker.report.summary import summarize, summary_table, write_summary

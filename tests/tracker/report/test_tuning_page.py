@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tracker import Config
-from tracker.evaluation.tuning_result import Tuning
+from tracker.evaluation.tuning.result import Tuning
 from tracker.report.tuning_page import tuning_page
 
 

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from tracker.config import Config
 from tracker.errors import RecordingError
-from tracker.evaluation.tuning_result import Tuning
+from tracker.evaluation.tuning.result import Tuning
 from tracker.report.tuning_table import parameters_table, verdict_table, write_tuning
 
 NAMES = ("acceleration_density", "confirm_detections", "motion")

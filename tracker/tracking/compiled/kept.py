@@ -92,7 +92,7 @@ class _Cache(FunctionCache):
             return super().load_overload(sig, target_context) if folder() else None
         except OSError:
             return None
-        except (EOFError, pickle.UnpicklingError):  # cut off: begin again
+        except (EOFError, pickle.UnpicklingError, ImportError):  # cut off, or moved: begin again
             self.flush()
             return None
 

@@ -1,0 +1,64 @@
+import numpy as np
+import pytest
+
+from tracker.errors import RecordingError
+from tracker.evaluation.detection.photo_labels import read_labels
+
+
+@pytest.fixture
+def labels(tmp_path):
+    """Writes labels beside two photos and reads them."""
+
+    def write(text):
+        for name in ("a.jpg", "b.jpg"):
+            (tmp_path / name).touch()
+        (tmp_path / "labels.csv").write_text(text, encoding="utf-8")
+        return read_labels(tmp_path)
+
+    return write
+
+
+def test_rows_of_one_photo_are_its_raised_hands(labels):
+    one, other = labels("file,raised,x,y\na.jpg,1,10,20\nb.jpg,0\na.jpg,yes,,\n")
+    assert (one.path.name, other.path.name) == ("a.jpg", "b.jpg")
+    np.testing.assert_array_equal(one.wrists_px, [(10.0, 20.0), (np.nan, np.nan)])
+    assert other.wrists_px.shape == (0, 2)
+
+
+def test_places_may_be_left_out_and_a_byte_order_mark_does_no_harm(labels):
+    (photo,) = labels("\ufefffile, raised\na.jpg, 1\n")
+    assert np.isnan(photo.wrists_px).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("file,raised\n", "holds no labels"),
+        ("name,up\na.jpg,1\n", r"line 1: the columns are name, up; needed are file,raised"),
+        ("", "line 1: the columns are none"),
+        ("file,raised\na.jpg,1\nc.jpg,1\n", r"line 3: there is no photo 'c\.jpg'"),
+        ("file,raised\n,1\n", "line 2: there is no photo ''"),
+        ("file,raised\na.jpg,maybe\n", "line 2: raised is 'maybe'; needed is 1 or 0"),
+        ("file,raised\na.jpg\n", "line 2: raised is ''"),
+        ("file,raised,x,y\na.jpg,1,7,\n", "line 2: x, y are '7', ''"),
+        ("file,raised,x,y\na.jpg,1,-3,4\n", "line 2: x, y are -3, 4"),
+        ("file,raised,x,y\na.jpg,1,nan,4\n", "line 2: x, y are nan, 4"),
+        ("file,raised\na.jpg,1,5\n", "line 2: more values than the columns"),
+        ("file,raised\na.jpg,0\nb.jpg,0\na.jpg,1\n", r"line 4: a\.jpg has raised hands"),
+        ("file,raised\na.jpg,1\na.jpg,0\n", r"line 3: a\.jpg has raised hands"),
+    ],
+)
+def test_what_is_off_is_named_with_its_line(labels, text, words):
+    with pytest.raises(RecordingError, match=words):
+        labels(text)
+
+
+def test_a_folder_without_labels_says_how_to_write_them(tmp_path):
+    with pytest.raises(RecordingError, match=r"labels\.csv: is not there; write one with"):
+        read_labels(tmp_path)
+
+
+def test_labels_that_are_no_text_are_refused(tmp_path):
+    (tmp_path / "labels.csv").write_bytes(b"file,raised\n\xff\xfe\x00,1\n")
+    with pytest.raises(RecordingError, match=r"is no CSV file in UTF-8"):
+        read_labels(tmp_path)

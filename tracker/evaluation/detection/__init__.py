@@ -1,0 +1,1 @@
+"""Which raised hands are found in pictures, and which are invented? Rendered scenes and photos."""

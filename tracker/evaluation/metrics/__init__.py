@@ -1,0 +1,1 @@
+"""How good are tracks against the truth? Distances, consistency, identities, raised hands."""

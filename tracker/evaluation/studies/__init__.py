@@ -1,0 +1,1 @@
+"""Many trials: who runs them, what is kept of them, and what they say together."""

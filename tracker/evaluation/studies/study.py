@@ -1,0 +1,268 @@
+"""What did the trials say, taken together? Figures with their intervals, and what was expected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.stats import norm
+
+from tracker.config import Config
+from tracker.containers import FloatArray
+from tracker.evaluation.metrics.consistency import mean_bounds
+from tracker.evaluation.metrics.cramer_rao import posterior_bound
+from tracker.evaluation.metrics.intervals import wilson_interval
+from tracker.evaluation.trials.filter_study import prior_covariance
+from tracker.evaluation.trials.scenario import (
+    FilterScenario,
+    KnownPeopleScenario,
+    PeopleScenario,
+    ScanScenario,
+)
+
+#: A filter is judged once its first second, in which it knows what it was told, is over.
+SETTLED_S = 1.0
+#: A track this many times farther off than the bound, at the end, is lost.
+LOST_BOUNDS = 6.0
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One number of a study.
+
+    Attributes:
+        name: What it is, with its unit.
+        value: Over all trials; NaN where nothing was measured.
+        low: 95 % interval of `value`, from the spread among trials; NaN where there is none.
+        high: Its other end.
+        expected: Between which numbers `value` lies in 95 % of all studies of a perfect filter.
+    """
+
+    name: str
+    value: float
+    low: float = float("nan")
+    high: float = float("nan")
+    expected: tuple[float, float] | None = None
+
+    @property
+    def as_expected(self) -> bool | None:
+        """Whether the value keeps to what is expected; None where nothing is."""
+        if self.expected is None:
+            return None
+        return self.expected[0] <= self.value <= self.expected[1]
+
+
+@dataclass(frozen=True, eq=False)
+class FilterStudy:
+    """Trials of a `FilterScenario`.
+
+    Attributes:
+        name: Of the scenario.
+        scenario: What happened.
+        config: The tracker's parameters.
+        seed: Of the study.
+        rows: Figures of each trial, shape (B,): `mse_m2`, `bound_m2` (along the trial's own path)
+            and `mean_nees`, means over the frames once settled; `final_error_m`, `final_nees` at
+            the last frame.
+        squared_error_m2: Shape (T,), mean over the trials.
+        nees: Shape (T,), mean over the trials.
+        information: Shape (T, 2, 2), mean over the trials.
+    """
+
+    name: str
+    scenario: FilterScenario
+    config: Config
+    seed: int
+    rows: dict[str, FloatArray]
+    squared_error_m2: FloatArray
+    nees: FloatArray
+    information: FloatArray
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return len(self.rows["mse_m2"])
+
+    @cached_property
+    def bound_m2(self) -> FloatArray:
+        """Shape (T,): least mean squared error of the position, from the expected information."""
+        scenario = self.scenario
+        bound = posterior_bound(
+            prior_covariance(scenario),
+            self.information,
+            1.0 / scenario.rate_hz,
+            scenario.acceleration_density,
+        )
+        return np.asarray(bound[:, 0, 0] + bound[:, 1, 1])
+
+    @property
+    def lost(self) -> int:
+        """Trials whose track is nowhere near at the end."""
+        limit_m = LOST_BOUNDS * np.sqrt(self.bound_m2[-1])
+        return int(np.count_nonzero(~(self.rows["final_error_m"] <= limit_m)))
+
+    @property
+    def figures(self) -> tuple[Figure, ...]:
+        """The table of the study."""
+        settled = settled_frame(self.scenario)
+        expected_m = float(np.sqrt(self.bound_m2[settled:].mean()))
+        bound_m = float(np.sqrt(self.rows["bound_m2"].mean()))
+        rmse = _root_mean("RMSE (m)", self.rows["mse_m2"])
+        bounds = mean_bounds(4, self.trials)
+        nees = _mean("NEES at the end (ideal 4)", self.rows["final_nees"])
+        return (
+            Figure(
+                "RMSE / Cramer-Rao bound",
+                rmse.value / bound_m,
+                rmse.low / bound_m,
+                rmse.high / bound_m,
+            ),
+            rmse,
+            Figure("bound along the paths (m)", bound_m),
+            Figure("bound of expected information (m)", expected_m),
+            Figure(nees.name, nees.value, nees.low, nees.high, bounds),
+            _mean("NEES over time (ideal 4)", self.rows["mean_nees"]),
+            Figure("tracks lost", float(self.lost)),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class KnownPeopleStudy:
+    """Trials of a `KnownPeopleScenario`.
+
+    Attributes:
+        name: Of the scenario.
+        scenario: What happened.
+        config: The tracker's parameters.
+        seed: Of the study.
+        rows: Figures of each trial, shape (B,), from `known_people.known_people_rows`.
+    """
+
+    name: str
+    scenario: KnownPeopleScenario
+    config: Config
+    seed: int
+    rows: dict[str, FloatArray]
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return len(self.rows["mse_m2"])
+
+    @property
+    def figures(self) -> tuple[Figure, ...]:
+        """The table of the study."""
+        rows = self.rows
+        return (
+            _root_mean("RMSE (m)", rows["mse_m2"]),
+            _mean("NEES of found people (ideal 4)", rows["final_nees"]),
+            _mean("wrong measurements, share", rows["wrong_share"]),
+            _mean("people swapped, share", rows["swapped_share"]),
+            _mean("people lost, share", rows["lost_share"]),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class PeopleStudy:
+    """Trials of a `PeopleScenario` or a `ScanScenario`.
+
+    Attributes:
+        name: Of the scenario.
+        scenario: What happened.
+        config: The tracker's parameters.
+        seed: Of the study.
+        rows: Figures of each trial, shape (B,), by the names of `people_trial.TrialScores.row`.
+    """
+
+    name: str
+    scenario: PeopleScenario | ScanScenario
+    config: Config
+    seed: int
+    rows: dict[str, FloatArray]
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return len(self.rows["gospa_m"])
+
+    @property
+    def figures(self) -> tuple[Figure, ...]:
+        """The table of the study."""
+        rows = self.rows
+        hands, again = float(rows["hands"].sum()), float(rows["raised_again"].sum())
+        return (
+            _mean("GOSPA (m), cutoff 1 m", rows["gospa_m"]),
+            _mean("  localisation (m^2)", rows["gospa_localisation"]),
+            _mean("  missed (m^2)", rows["gospa_missed"]),
+            _mean("  false (m^2)", rows["gospa_false"]),
+            _mean("OSPA (m), cutoff 1 m", rows["ospa_m"]),
+            _mean("missed share of people", rows["missed_share"]),
+            _mean("false tracks in a frame", rows["false_tracks"]),
+            _mean("identity switches a minute", rows["identity_switches_per_min"]),
+            _mean("track purity", rows["track_purity"]),
+            _mean("RMSE of found people (m)", rows["rmse_m"]),
+            _mean("NEES of the position (ideal 2)", rows["nees_position"]),
+            _mean("time to raise (s)", rows["time_to_raise_s"]),
+            Figure("raised hands", hands),
+            _share("missed raises, share", rows["missed_raises"].sum(), hands),
+            _mean("false raises in a trial", rows["false_raises"]),
+            _share("raised again: same identity", rows["same_identity"].sum(), again),
+            _share("raised again: somebody else's", rows["wrong_identity"].sum(), again),
+        )
+
+
+Study = FilterStudy | KnownPeopleStudy | PeopleStudy
+
+
+def settled_frame(scenario: FilterScenario) -> int:
+    """First frame that is judged; the last one at least."""
+    return min(round(SETTLED_S * scenario.rate_hz), scenario.frames - 1)
+
+
+def study_as_dict(study: Study) -> dict[str, Any]:
+    """What a study says in plain numbers, fit for JSON; None for what was not measured."""
+    return {
+        "scenario": study.name,
+        "title": study.scenario.title,
+        "trials": study.trials,
+        "seed": study.seed,
+        "figures": [
+            {
+                "name": figure.name.strip(),
+                "value": _number(figure.value),
+                "interval_95": [_number(figure.low), _number(figure.high)],
+                "expected_95": None if figure.expected is None else list(figure.expected),
+            }
+            for figure in study.figures
+        ],
+    }
+
+
+def _mean(name: str, values: FloatArray) -> Figure:
+    values = values[np.isfinite(values)]
+    if len(values) == 0:
+        return Figure(name, float("nan"))
+    mean = float(values.mean())
+    if len(values) == 1:
+        return Figure(name, mean)
+    half = float(norm.ppf(0.975) * values.std(ddof=1) / np.sqrt(len(values)))
+    return Figure(name, mean, mean - half, mean + half)
+
+
+def _root_mean(name: str, squares: FloatArray) -> Figure:
+    mean = _mean(name, squares)
+    value, low, high = (float(np.sqrt(max(x, 0.0))) for x in (mean.value, mean.low, mean.high))
+    return Figure(name, value, low, high)
+
+
+def _share(name: str, count: float, total: float) -> Figure:
+    """A share and Wilson's interval of it."""
+    if total == 0:
+        return Figure(name, float("nan"))
+    return Figure(name, float(count / total), *wilson_interval(count, total))
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

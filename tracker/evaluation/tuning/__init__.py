@@ -1,0 +1,1 @@
+"""Which parameters and which mounting explain the data best?"""
