@@ -17,6 +17,12 @@ from tracker.parameter_file import NODE_NAME as NODE_NAME  # where it is looked 
 from tracker.parameter_file import is_ours, read_parameters
 from tracker.wording import shown
 
+#: Parameters of earlier versions, which people's files still name, and why they went.
+_RETIRED = {
+    "appearance_weight": "the colors of clothes told people apart no better",
+    "measurement_model": "bearing and range are always compared where they were taken (polar)",
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Search:
@@ -377,12 +383,6 @@ class Config(BaseModel):
         group="tracking", live=True,
         search=Search("method"),
     )  # fmt: skip
-    measurement_model: Literal["polar", "converted"] = _parameter(
-        "polar", "Bearing and range are compared where they were taken (polar), or as points of "
-        "the fixed frame (converted).",
-        group="tracking", live=True,
-        search=Search("method"),
-    )  # fmt: skip
     association: Literal["hungarian", "jpda"] = _parameter(
         "jpda", "Whose measurement is it? jpda: every measurement in the gate counts by its "
         "probability; hungarian: the most likely one-to-one assignment, somewhat cheaper.",
@@ -441,12 +441,6 @@ class Config(BaseModel):
         0.9, "Chance that a raised hand, or a person in the scan, is detected in a frame.",
         group="tracking", live=True, ge=0.05, le=0.99,
         search=Search("clutter", 0.3, 0.98),
-    )  # fmt: skip
-    appearance_weight: float = _parameter(
-        0.0, "What likeness of the clothes counts when a measurement is assigned: 1 as much as it "
-        "was measured to be worth on pictures, 0 nothing; it saves wrong identities and costs "
-        "new ones.",
-        group="tracking", live=True, ge=0.0, le=10.0,
     )  # fmt: skip
     newcomer_density: float = _parameter(
         0.005, "Raised hands of nobody known, false ones and new customers', per frame and area.",
@@ -651,6 +645,8 @@ def parameter_search(name: str) -> Search | None:
 
 def _reason(item: Any) -> str:
     name = ".".join(map(str, item["loc"]))
+    if name in _RETIRED:
+        return f"parameter `{name}` is no longer there: {_RETIRED[name]}. Delete it"
     if name and name not in Config.model_fields:
         return f"unknown parameter `{name}`{_suggestion(name)}"
     if not name:

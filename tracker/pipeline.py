@@ -9,14 +9,13 @@ the data's own: nothing here reads a clock.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import CameraImage, FrameResult, Hands, LocatedScan, Measurements, Scan
+from tracker.containers import CameraImage, FrameResult, LocatedScan, Scan
 from tracker.geometry import RigidTransform
 from tracker.locating import CameraLocator, CameraPlace, choose_scan
 from tracker.notes import Note, NoteKind
@@ -210,8 +209,7 @@ class Pipeline:
             known_xy_m = np.concatenate([self.tracker.positions_m, people.xy_m])
             expected_px = expected_hands(known_xy_m, self.camera, fixed_from_camera)
             piecewise.expect(self._turn.boxes(expected_px, size))
-        upright = self._turn.picture(image)
-        upright_hands = self.detector.find(upright)
+        upright_hands = self.detector.find(self._turn.picture(image))
         hands = self._turn.hands_back(upright_hands, size)
         measurements = measure_people(
             hands,
@@ -230,8 +228,6 @@ class Pipeline:
             self._note(NoteKind.HAND_BEYOND_LENS, text)
         if scan is not None:
             self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
-        if self.config.appearance_weight and hands.raised.any():
-            measurements = _with_clothes(measurements, upright, upright_hands)
         robot_xy_m = fixed_from_camera.planar[:2]
         tracks = self.tracker.step(
             image.stamp_ns,
@@ -345,15 +341,6 @@ class Pipeline:
             return None
         range_max_m = min(scan.range_max_m, self.config.person_range_max_m)
         return View.between(np.append(scan.laser_xy_m, 0.0), *scan.span_rad, range_max_m)
-
-
-def _with_clothes(measurements: Measurements, image: CameraImage, hands: Hands) -> Measurements:
-    """The same measurements, those of raised hands with the colors of their owners' clothes."""
-    from tracker.perception.clothes import BINS, clothes_histograms  # brings OpenCV along
-
-    of_hands = np.full((len(hands) + 1, BINS), np.nan)  # the last row for who has no hand
-    of_hands[:-1][hands.raised] = clothes_histograms(image.bgr, hands[hands.raised])
-    return replace(measurements, appearance=of_hands[measurements.hand])
 
 
 def _ns(value_s: float) -> int:

@@ -65,6 +65,14 @@ def test_the_example_of_section_12_loads_unchanged(section_12):
     )
 
 
+@pytest.mark.parametrize(
+    ("name", "value"), [("appearance_weight", 0.0), ("measurement_model", "polar")]
+)
+def test_a_parameter_of_an_earlier_version_is_to_be_deleted(name, value):
+    with pytest.raises(ConfigError, match=f"`{name}` is no longer there: .* Delete it"):
+        Config.from_mapping({name: value})
+
+
 def test_an_unknown_parameter_is_named_with_its_neighbor():
     with pytest.raises(ConfigError, match="`procesing_rate`; did you mean `processing_rate`"):
         Config.from_mapping({"procesing_rate": 5.0})

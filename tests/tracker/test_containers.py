@@ -273,41 +273,6 @@ def test_joined_batches_keep_the_order_of_their_rows():
     assert joined.person.tolist() == [4, 5, -1]
 
 
-def test_appearance_goes_with_its_row():
-    looks = np.array([[0.25, 0.75], [1.0, 0.0], [math.nan, math.nan]])
-    claims = Measurements.polar([0.1, 0.2, 0.3], 2.0, 0.01, 0.1, appearance=looks)
-    np.testing.assert_array_equal(claims[[2, 0]].appearance, looks[[2, 0]])
-    points = Measurements.cartesian(np.ones((3, 2)), np.eye(2), appearance=looks)
-    joined = Measurements.concatenate(points[:1], claims)
-    np.testing.assert_array_equal(joined.appearance, looks[[0, 0, 1, 2]])
-
-
-def test_claims_whose_appearance_nobody_looked_at_join_as_unknown():
-    plain = Measurements.cartesian([1.0, 2.0], np.eye(2))
-    seen = Measurements.cartesian([1.0, 2.0], np.eye(2), appearance=[[0.5, 0.5]])
-    joined = Measurements.concatenate(plain, seen, Measurements.none())
-    assert np.isnan(joined.appearance[0]).all()
-    assert joined.appearance[1].tolist() == [0.5, 0.5]
-    assert Measurements.concatenate(plain, plain).appearance is None
-
-
-@pytest.mark.parametrize(
-    "shape", [(2,), (3, 4), (2, 3, 4), ()], ids=["flat", "rows", "deep", "number"]
-)
-def test_an_appearance_of_another_shape_is_refused(shape):
-    with pytest.raises(ShapeError, match="appearance"):
-        Measurements.cartesian(np.ones((2, 2)), np.eye(2), appearance=np.zeros(shape))
-
-
-def test_appearances_of_different_lengths_cannot_be_joined():
-    two, three = (
-        Measurements.cartesian([1.0, 2.0], np.eye(2), appearance=np.zeros((1, bins)))
-        for bins in (2, 3)
-    )
-    with pytest.raises(ShapeError, match=r"\[2, 3\]"):
-        Measurements.concatenate(two, three)
-
-
 @pytest.mark.parametrize("std", [2e154, 1e200, 1e308, float("inf")])
 def test_a_spread_whose_square_overflows_is_no_warning(std):
     wide = Measurements.polar([0.1], [2.0], std, std, (0.0, 0.0, 0.0))

@@ -8,7 +8,6 @@ from tracker import CameraImage, Config, Hands, Pipeline, Scan
 from tracker.camera import CameraModel
 from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.notes import Note, NoteKind
-from tracker.simulation.hand_shape import LANDMARKS
 from tracker.transforms import StampedTransform
 
 PERIOD_NS = 100_000_000
@@ -348,31 +347,6 @@ def test_a_customer_who_stands_still_with_the_hand_down_is_no_furniture():
     assert len(last.tracks) == 1
     assert len(last.measurements) == 1
     assert last.tracks.unseen_s[0] == 0.0
-
-
-def test_raised_hands_are_measured_with_the_clothes_of_their_owners(located):
-    located.configure(Config(appearance_weight=1.0))
-    assert play(located, 1)[0].measurements.appearance is not None
-    located.detector.wrists_px = ()
-    assert play(located, 1, START_NS + PERIOD_NS)[0].measurements.appearance is None
-
-
-def test_without_weight_nobody_looks_at_clothes(located):
-    located.configure(Config(appearance_weight=0.0))
-    assert play(located, 1)[0].measurements.appearance is None
-
-
-def test_each_measurement_shows_the_clothes_below_its_own_hand():
-    wrists = np.array([(100.0, 100.0), (400.0, 100.0)])
-    landmarks = wrists[:, None] + 50.0 * LANDMARKS * [1.0, -1.0]
-    one = np.ones(2)
-    hands = Hands(landmarks, one, one, np.array([True, False]), one)
-    pipeline = Pipeline(Config(appearance_weight=1.0), SeenHands())
-    pipeline.detector.find = lambda image: hands
-    result = pipeline.process(image_at(START_NS))
-    of_hand = dict(zip(result.measurements.hand, result.measurements.appearance, strict=True))
-    assert of_hand[0].sum() == pytest.approx(1.0)
-    assert np.isnan(of_hand[1]).all()
 
 
 def rolled(roll_deg):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from enum import IntEnum
 from typing import Any
 
@@ -23,7 +23,6 @@ from tracker.containers.arrays import (
     select,
     trusted,
 )
-from tracker.errors import ShapeError
 
 _LAYOUT = {
     "values": (NUMBERS, (2,)),
@@ -63,8 +62,6 @@ class Measurements:
             (the same scan segment); -1 where nobody knows.
         hand: Shape (M,), int64: row of the image's `Hands`, or -1.
         sensor_pose_covariance: Shape (M, 3, 3), of `sensor_pose`; None means zeros (well known).
-        appearance: Shape (M, D): histograms of what the person looks like (the clothes), each
-            adding up to 1; rows of NaN or zeros are unknown. None where nobody looked.
     """
 
     values: FloatArray
@@ -75,16 +72,12 @@ class Measurements:
     person: IntArray
     hand: IntArray
     sensor_pose_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
-    appearance: FloatArray | None = None
 
     def __post_init__(self) -> None:
         count = len(self.values)
         if self.sensor_pose_covariance is None:
             object.__setattr__(self, "sensor_pose_covariance", constant(0.0, (count, 3, 3)))
         check_rows(self, count, _LAYOUT)
-        if self.appearance is not None:
-            length = np.shape(self.appearance)[1:2] or (0,)  # of any length
-            check_rows(self, count, {"appearance": (NUMBERS, length)})
 
     def __len__(self) -> int:
         return len(self.values)
@@ -108,7 +101,6 @@ class Measurements:
         raised: ArrayLike = True,
         person: ArrayLike = -1,
         hand: ArrayLike = -1,
-        appearance: ArrayLike | None = None,
     ) -> Measurements:
         """Bearings and ranges seen from a sensor.
 
@@ -121,7 +113,6 @@ class Measurements:
             raised: Shape (M,) or one truth value.
             person: Shape (M,) or one number; see the class.
             hand: Shape (M,) or one number; see the class.
-            appearance: Shape (M, D), or None; see the class.
 
         Raises:
             ShapeError: The arrays disagree in length.
@@ -137,7 +128,7 @@ class Measurements:
         with np.errstate(over="ignore"):  # an infinite variance says nothing, and is passed over
             covariance *= covariance
         np.copyto(spread, 1.0, where=np.isnan(distance))
-        measured = trusted(
+        return trusted(
             Measurements,
             values=sealed(values),
             covariance=sealed(covariance),
@@ -147,11 +138,7 @@ class Measurements:
             person=_column("person", person, count, COUNTS),
             hand=_column("hand", hand, count, COUNTS),
             sensor_pose_covariance=constant(0.0, (count, 3, 3)),
-            appearance=None,
         )
-        if appearance is None:
-            return measured
-        return replace(measured, appearance=np.asarray(appearance, np.float64))
 
     @staticmethod
     def cartesian(
@@ -161,7 +148,6 @@ class Measurements:
         raised: ArrayLike = True,
         person: ArrayLike = -1,
         hand: ArrayLike = -1,
-        appearance: ArrayLike | None = None,
     ) -> Measurements:
         """Positions in the fixed frame.
 
@@ -171,7 +157,6 @@ class Measurements:
             raised: Shape (M,) or one truth value.
             person: Shape (M,) or one number; see the class.
             hand: Shape (M,) or one number; see the class.
-            appearance: Shape (M, D), or None; see the class.
 
         Raises:
             ShapeError: The arrays disagree in length.
@@ -189,22 +174,16 @@ class Measurements:
             raised=_column("raised", raised, count, FLAGS),
             person=_column("person", person, count, COUNTS),
             hand=_column("hand", hand, count, COUNTS),
-            appearance=None if appearance is None else np.asarray(appearance, np.float64),
         )
 
     @staticmethod
     def concatenate(*parts: Measurements) -> Measurements:
-        """Join batches of one instant, rows in the order given.
-
-        Raises:
-            ShapeError: Their histograms of appearance differ in length.
-        """
+        """Join batches of one instant, rows in the order given."""
         joined = {
             item.name: np.concatenate([getattr(part, item.name) for part in parts])
             for item in fields(Measurements)
-            if item.name != "appearance"
         }
-        return Measurements(**joined, appearance=_joined_appearance(parts))
+        return Measurements(**joined)
 
 
 def _poses(sensor_pose: ArrayLike, count: int) -> FloatArray:
@@ -221,21 +200,3 @@ def _column(name: str, value: ArrayLike, count: int, dtype: np.dtype[Any]) -> ND
     column = np.empty(count, dtype)
     fill(name, column, value)
     return sealed(column)
-
-
-def _joined_appearance(parts: tuple[Measurements, ...]) -> FloatArray | None:
-    """Rows of NaN for parts without appearance."""
-    lengths = {part.appearance.shape[1] for part in parts if part.appearance is not None}
-    if not lengths:
-        return None
-    if len(lengths) > 1:
-        raise ShapeError(
-            f"Histograms of appearance have {sorted(lengths)} numbers; joined, all need as many."
-        )
-    unknown = np.full((1, *lengths), np.nan)
-    return np.concatenate(
-        [
-            unknown.repeat(len(part), axis=0) if part.appearance is None else part.appearance
-            for part in parts
-        ]
-    )

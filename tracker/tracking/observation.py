@@ -13,9 +13,7 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, IntArray, Measurements
 from tracker.tracking.admission import once_per_person, usable, with_hand_bias
-from tracker.tracking.appearance import Appearance, recognizable
 from tracker.tracking.association import assign, log_odds
-from tracker.tracking.converted import convert
 from tracker.tracking.gating import Pairs, find_pairs
 from tracker.tracking.innovations import Round, Watch
 from tracker.tracking.joint_probability import marginals
@@ -80,21 +78,17 @@ def observe(
     belief, existence, called_by = _update(
         people.belief,
         people.existence,
-        people.appearance,
         raised,
         in_camera * hand_chance,
         config,
         tell,
     )
-    belief, existence, shown_by = _update(
-        belief, existence, people.appearance, others, in_view, config, tell
-    )
+    belief, existence, shown_by = _update(belief, existence, others, in_view, config, tell)
     is_called, is_shown = called_by >= 0, shown_by >= 0
     is_seen = is_called | is_shown
     hand = np.full(len(people), -1, dtype=np.int64)
     hand[is_shown] = others.hand[shown_by[is_shown]]
     hand[is_called] = raised.hand[called_by[is_called]]
-    looks = people.appearance.remember(raised.appearance, called_by)
     people = count_detections(
         people,
         is_called,
@@ -104,7 +98,6 @@ def observe(
         belief=belief,
         existence=existence,
         hand=hand,
-        appearance=looks.remember(others.appearance, shown_by),
     )
     return Observed(
         people=people,
@@ -122,11 +115,6 @@ def _admit(
     sane = usable(measurements)
     if not sane.all():
         measurements = measurements[sane]
-    if measurements.appearance is not None:
-        looks = recognizable(measurements.appearance) if config.appearance_weight else None
-        measurements = replace(measurements, appearance=looks)
-    if config.measurement_model == "converted":
-        measurements = convert(measurements)
     raised, others = measurements, NO_MEASUREMENTS
     if not measurements.raised.all():
         raised, others = measurements[measurements.raised], measurements[~measurements.raised]
@@ -154,7 +142,6 @@ def _predict(
 def _update(
     belief: Belief,
     existence: FloatArray,
-    appearance: Appearance,
     claims: Measurements,
     visible: FloatArray,
     config: Config,
@@ -170,9 +157,6 @@ def _update(
         return belief, existence, got
     pairs = find_pairs(belief, claims, config)
     odds = log_odds(pairs, belief.weight, chance)
-    if claims.appearance is not None:
-        clothes = appearance.log_ratio(claims.appearance, pairs.track, pairs.claim)
-        odds += config.appearance_weight * clothes
     chosen = assign(pairs, odds, len(existence))
     rows = np.flatnonzero(chosen >= 0)
     hits = chosen[rows]

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from tracker.containers import BoolArray, FloatArray, IntArray, Tracks
 from tracker.containers.arrays import frozen, sealed, trusted
-from tracker.tracking.appearance import Appearance
 from tracker.tracking.modes import Belief
 from tracker.tracking.streaks import Streaks
 
@@ -44,7 +43,6 @@ class People:
         counts: Shape (9, N), int64: identities, numbers and stamps.
         flags: Shape (2, N), bool.
         recent: Shape (N, W), bool: raised-hand detections of the last W frames, newest first.
-        appearance: What they wear.
         id: Shape (N,), int64; 0 for bystanders, whose hand has never been up.
         existence: Shape (N,): probability that somebody is there.
         confirmed: Shape (N,), bool.
@@ -65,7 +63,6 @@ class People:
     counts: IntArray
     flags: BoolArray
     recent: BoolArray
-    appearance: Appearance
 
     id = _Row("counts", ID)
     existence = _Row("spans", EXISTENCE)
@@ -97,7 +94,6 @@ class People:
             self.counts[:, rows],
             self.flags[:, rows],
             self.recent[rows],
-            self.appearance[rows],
         )
 
     @property
@@ -125,7 +121,6 @@ class People:
         stamp_ns: int,
         window: int,
         existence: FloatArray,
-        appearance: Appearance,
     ) -> People:
         """People who have just been seen for the first time; nothing is counted yet."""
         count = len(ids)
@@ -136,14 +131,13 @@ class People:
         counts[[RAISED_SINCE_NS, HAND]] = -1
         flags = np.zeros((2, count), dtype=bool)
         recent = np.zeros((count, window), dtype=bool)
-        return People(belief, spans, counts, flags, recent, appearance)
+        return People(belief, spans, counts, flags, recent)
 
     @staticmethod
     def nobody(window: int, modes: int) -> People:
         """No track at all."""
         belief = Belief.begin(np.zeros((0, 4)), np.zeros((0, 4, 4)), modes, 0.0)
-        ids, nothing = np.zeros(0, dtype=np.int64), Appearance.unknown(0)
-        return People.begin(ids, belief, 0, window, np.zeros(0), nothing)
+        return People.begin(np.zeros(0, dtype=np.int64), belief, 0, window, np.zeros(0))
 
     def append(self, other: People) -> People:
         """Rows of both, in order."""
@@ -153,7 +147,6 @@ class People:
             np.concatenate([self.counts, other.counts], axis=1),
             np.concatenate([self.flags, other.flags], axis=1),
             np.concatenate([self.recent, other.recent]),
-            self.appearance.append(other.appearance),
         )
 
     def replace(self, **changes: Any) -> People:

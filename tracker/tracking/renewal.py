@@ -7,7 +7,6 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import FloatArray, Measurements
 from tracker.tracking.admission import is_close
-from tracker.tracking.appearance import Appearance
 from tracker.tracking.filter import initial_state
 from tracker.tracking.life_cycle import BIRTH_EXISTENCE, count_detections, still_there
 from tracker.tracking.modes import Belief
@@ -68,7 +67,5 @@ def _begin(
     belief = Belief.begin(mean[new], covariance[new], modes_of(config), config.stand_speed_std_mps)
     count = int(np.count_nonzero(new))
     ids, existence = np.zeros(count, dtype=np.int64), np.full(count, BIRTH_EXISTENCE)
-    looks = None if claims.appearance is None else claims.appearance[new]
-    appearance = Appearance.unknown(count).remember(looks, np.arange(count))
-    people = People.begin(ids, belief, stamp_ns, config.confirm_window, existence, appearance)
+    people = People.begin(ids, belief, stamp_ns, config.confirm_window, existence)
     return people, claims[new]

@@ -22,12 +22,12 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
     set off faster than expected: the older identity goes on, with what the seen track knows of
     place, hand and time. Whoever was followed beside the customer before is somebody else. A
     bystander is left alone then; a customer stays who they are, and the silent track, which has
-    strayed there, ends. People whose clothes rather speak for two are no twins.
+    strayed there, ends.
 
     Args:
         people: Everybody.
         is_seen: Shape (N,): any measurement was assigned in this frame.
-        config: `same_person_distance_m`, `appearance_weight`.
+        config: `same_person_distance_m`.
     """
     silent = np.flatnonzero(~is_seen & people.is_customer)
     seen = np.flatnonzero(is_seen)
@@ -47,9 +47,6 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
     rows = np.arange(len(silent))
     close = distance[rows, nearest] < config.same_person_distance_m
     goes_on = goes_on[rows, nearest]
-    clothes = people.appearance
-    if config.appearance_weight and close.any():
-        close &= clothes.log_ratio(clothes.histogram, silent, seen[nearest]) >= 0.0
     if not close.any():
         return people
     keep = np.ones(len(people), dtype=bool)
@@ -68,5 +65,4 @@ def merge_twins(people: People, is_seen: BoolArray, config: Config) -> People:
         confirmed=(people.confirmed | people.confirmed[heir])[keep],
         detections=np.maximum(people.detections, people.detections[heir])[keep],
         called_ns=np.maximum(people.called_ns, people.called_ns[heir])[keep],
-        appearance=clothes.remember(clothes.histogram, heir)[keep],
     )

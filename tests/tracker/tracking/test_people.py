@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from tracker.tracking.appearance import Appearance
 from tracker.tracking.modes import Belief
 from tracker.tracking.people import People
 from tracker.tracking.streaks import Streaks
@@ -11,7 +10,7 @@ from tracker.tracking.streaks import Streaks
 def people() -> People:
     belief = Belief.begin(np.zeros((3, 4)), np.tile(np.eye(4), (3, 1, 1)), 2, 0.1)
     ids, existence = np.array([2, 0, 1]), np.full(3, 0.5)
-    return People.begin(ids, belief, 7, 4, existence, Appearance.unknown(3))
+    return People.begin(ids, belief, 7, 4, existence)
 
 
 def test_people_begin_now_without_a_hand_or_a_count(people):

@@ -14,7 +14,7 @@ CONFIGS = {
     "everything on": Config(hand_bias_duration_s=1.0, confirmation="existence"),
     "plain": Config(motion="cv", outlier_dof=0.0),
     "joint probabilities": Config(association="jpda"),
-    "converted": Config(measurement_model="converted", association="jpda", motion="cv"),
+    "joint probabilities, one mode": Config(association="jpda", motion="cv"),
 }
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 LIKELY = st.one_of(st.floats(-10, 10), ANY)

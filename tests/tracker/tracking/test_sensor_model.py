@@ -1,12 +1,10 @@
 import numpy as np
-import pytest
 from filterpy.kalman import ExtendedKalmanFilter
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import approx_fprime
 
 from tracker import Measurements
-from tracker.tracking.converted import convert
 from tracker.tracking.filter import innovations, update
 from tracker.tracking.motion import predict
 from tracker.tracking.sensor_model import expect_polar, pose_noise
@@ -90,21 +88,3 @@ def test_an_uncertain_pose_makes_the_posterior_less_certain():
     gained = update(mean, covariance, unsure)[1] - update(mean, covariance, sure)[1]
     assert np.linalg.eigvalsh(gained)[0, -1] > 1e-3
     assert np.linalg.eigvalsh(gained)[0, 0] > -1e-9
-
-
-def test_a_converted_measurement_is_right_on_average_and_says_how_far_off():
-    rng = np.random.default_rng(7)
-    std, truth = 0.05, np.array([3.0, 2.0])
-    bearing = np.arctan2(truth[1], truth[0]) + rng.normal(scale=std, size=20_000)
-    range_m = np.hypot(*truth) + rng.normal(scale=0.1, size=20_000)
-    points = convert(Measurements.polar(bearing, range_m, std, 0.1))
-    error = points.values - truth
-    # Four standard errors of a mean; the raw conversion is off by 4.5 mm, 13 of them along range.
-    assert np.abs(error.mean(axis=0)).max() < 4 * 0.18 / np.sqrt(20_000)
-    nees = np.einsum("ni,nij,nj->n", error, np.linalg.inv(points.covariance), error)
-    assert nees.mean() == pytest.approx(2.0, abs=0.1)
-
-
-def test_bearings_alone_are_not_converted():
-    claims = Measurements.polar([0.1, 0.2], [np.nan, 2.0], 0.05, 0.1)
-    assert convert(claims).model.tolist() == [0, 1]

@@ -18,7 +18,6 @@ from tracker.evaluation.metrics.cramer_rao import polar_information
 from tracker.evaluation.trials.scenario import FilterScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.geometry import normalize_angle
-from tracker.tracking.converted import convert
 from tracker.tracking.filter import update
 from tracker.tracking.motion import predict, process_noise
 
@@ -132,8 +131,6 @@ def run_filter(
             np.deg2rad(scenario.bearing_std_deg),
             scenario.range_std_m,
         )
-        if config.measurement_model == "converted":
-            measured = convert(measured)
         mean, covariance = update(mean, covariance, measured, config.outlier_dof)
         means[frame], covariances[frame] = mean, covariance
     return means, covariances

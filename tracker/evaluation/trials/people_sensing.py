@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, Measurements
-from tracker.evaluation.trials.clothes_sensing import draw_clothes, look_at_clothes
 from tracker.evaluation.trials.people_scene import PeopleScene
 from tracker.evaluation.trials.scenario import PeopleScenario
 from tracker.geometry import normalize_angle
@@ -46,11 +45,6 @@ def sense(
     Yields:
         Each frame in turn.
     """
-    # Of its own, so that the same scene with and without clothes has the same measurements.
-    clothes_rng = rng.spawn(1)[0]
-    looks = appearance = None
-    if scenario.appearance_noise is not None:
-        looks = look_at_clothes(scene.hand_up, scenario.appearance_noise, clothes_rng)
     xy = scene.shown_xy_m
     range_m = np.linalg.norm(xy, axis=-1)
     bearing = np.arctan2(xy[..., 1], xy[..., 0]) - scene.shown_yaw_rad[:, None]
@@ -88,9 +82,6 @@ def sense(
         in_view = np.abs(normalize_angle(false_hands[:, 0])) <= view_rad / 2
         false_hands = false_hands[in_view]
         false_std = np.hypot(noise_rad, np.arctan2(scenario.hand_offset_m, false_hands[:, 1]))
-        if looks is not None:
-            of_nobody = draw_clothes(clothes_rng, len(false_hands))
-            appearance = np.concatenate([looks[frame, hands], of_nobody])
         measured = Measurements.concatenate(
             Measurements.polar(
                 normalize_angle(np.append(hand_bearing[frame, hands], false_hands[:, 0])),
@@ -98,7 +89,6 @@ def sense(
                 np.append(hand_std[frame, hands], false_std),
                 scenario.range_std_m,
                 pose,
-                appearance=appearance,
             ),
             Measurements.polar(
                 normalize_angle(np.append(cluster_bearing[frame, clusters], false_clusters[:, 0])),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
@@ -84,9 +84,6 @@ class PeopleScenario:
         latency_s: Measurements are so much older than their stamp says.
         pose_std_m: Error of the robot's position, anew in every frame ...
         pose_std_deg: ... and of its direction.
-        appearance_noise: Raised hands come with a histogram of their owner's clothes, of which up
-            to this share is something else, anew in every raise; None for no histograms. 0.6
-            keeps people as far apart as pictures do (`benchmarks/clothes.py`).
         noise_known: Measurements state their true noise; otherwise what the tracker's parameters
             say, as on a robot (`range_std_m`, `hand_offset_std_m`).
         parameters: Names and values that the tracker is set to, where they are not its defaults.
@@ -118,7 +115,6 @@ class PeopleScenario:
     latency_s: float = 0.0
     pose_std_m: float = 0.0
     pose_std_deg: float = 0.0
-    appearance_noise: float | None = None
     noise_known: bool = True
     parameters: Parameters = ()
 
@@ -128,8 +124,8 @@ class KnownPeopleScenario:
     """People who are known from the start and move as the tracker believes, seen by one sensor.
 
     Prediction, gate, assignment and correction are at work; nobody comes or goes. Whatever
-    `motion`, `association`, `measurement_model` and `outlier_dof` say, people walk, the assignment
-    is the most likely one, and bearings and ranges are Gaussian.
+    `motion`, `association` and `outlier_dof` say, people walk, the assignment is the most likely
+    one, and bearings and ranges are Gaussian.
 
     Attributes:
         title: One sentence.
@@ -264,12 +260,6 @@ SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
             clutter_per_frame=0.5,
         ),
         "hands-down": _HANDS_DOWN,
-        "hands-down-clothes": replace(
-            _HANDS_DOWN,
-            title="The same measurements, and the camera sees clothes below raised hands.",
-            appearance_noise=0.6,
-            parameters=_parameters(appearance_weight=1.0),
-        ),
         "hands-down-scans": ScanScenario(
             title="The same in a furnished room, with people found in ray-cast scans.",
         ),

@@ -2,8 +2,7 @@
 
 Where NumPy pays for each small call, a loop pays for what it computes: a frame of twenty people
 costs a tenth. File by file the stages are those of `tracker.tracking`, whose docstrings hold the
-equations and their sources; the tests hold both to the same numbers. What the loops do not know
-(clothes, converted measurements) goes the other way.
+equations and their sources; the tests hold both to the same numbers.
 
 The machine code is kept on disk, so that only the first run on a machine waits for the compiler.
 """

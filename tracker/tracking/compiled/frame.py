@@ -9,7 +9,6 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import FloatArray, Measurements
 from tracker.containers.arrays import FLAGS, constant
-from tracker.tracking import frame
 from tracker.tracking.admission import hand_bias, is_semidefinite
 from tracker.tracking.compiled.kernel import track_frame
 from tracker.tracking.compiled.settings import settings_of
@@ -40,11 +39,6 @@ class CompiledTrack:
         scan_view: View | None,
     ) -> tuple[People, int]:
         """Everybody after one instant, and the identity of the next customer."""
-        is_dressed = measurements.appearance is not None or people.appearance.histogram.size > 0
-        if is_dressed or config.measurement_model == "converted":
-            return frame.track(
-                people, measurements, next_id, dt_s, stamp_ns, config, view, scan_view
-            )
         if config is not self._config:
             self._config, self._settings = config, settings_of(config)
         motion = motion_over(dt_s, config)

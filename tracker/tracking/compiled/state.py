@@ -1,4 +1,4 @@
-"""What is known of everybody, as loops take it: the arrays of `People`, all but the clothes."""
+"""What is known of everybody, as loops take it: the arrays of `People`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray
 from tracker.containers.arrays import trusted
-from tracker.tracking.appearance import Appearance
 from tracker.tracking.compiled.loop import loop
 from tracker.tracking.modes import Belief
 from tracker.tracking.people import People
@@ -51,7 +50,7 @@ def state_of(people: People) -> State:
 
 
 def people_of(state: State, mean: FloatArray, covariance: FloatArray) -> People:
-    """The way back; the clothes are unknown.
+    """The way back.
 
     Args:
         state: Of N people, all read-only.
@@ -65,7 +64,6 @@ def people_of(state: State, mean: FloatArray, covariance: FloatArray) -> People:
         counts=state.counts,
         flags=state.flags,
         recent=state.recent,
-        appearance=Appearance.unknown(len(mean)),
     )
 
 

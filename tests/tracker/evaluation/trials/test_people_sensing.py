@@ -99,29 +99,3 @@ def test_lowered_hands_come_from_the_scan_alone():
     for frame, item in enumerate(frames):
         assert item.raised.sum() == scene.hand_up[frame].sum()
         assert (~item.raised).sum() == 1
-
-
-WITH_CLOTHES = dataclasses.replace(
-    PLAIN,
-    duration_s=20.0,
-    people=(3, 3),
-    clutter_per_frame=0.5,
-    hand_up_s=(2.0, 4.0),
-    hand_down_s=(1.0, 2.0),
-    scan_detection_probability=1.0,
-)
-
-
-def test_clothes_change_nothing_else_of_what_is_measured():
-    _, without = measured(WITH_CLOTHES)
-    _, seen = measured(dataclasses.replace(WITH_CLOTHES, appearance_noise=0.6))
-    for one, other in zip(without, seen, strict=True):
-        assert one.appearance is None
-        np.testing.assert_array_equal(one.values, other.values)
-
-
-def test_raised_hands_show_clothes_and_clusters_do_not():
-    _, frames = measured(dataclasses.replace(WITH_CLOTHES, appearance_noise=0.6))
-    for item in frames:
-        np.testing.assert_allclose(item.appearance[item.raised].sum(axis=1), 1.0)
-        assert np.isnan(item.appearance[~item.raised]).all()

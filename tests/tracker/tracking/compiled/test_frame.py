@@ -16,7 +16,6 @@ CONFIGS = {
     "m of n": Config(confirmation="m_of_n", association="hungarian"),
     "hand bias": Config(hand_bias_duration_s=1.0, confirmation="existence"),
     "one mode, jointly": Config(motion="cv", association="jpda"),
-    "clothes": Config(appearance_weight=1.0),
 }
 PEOPLE = 6
 
@@ -55,9 +54,6 @@ def room(seed, frames=60):
         if number % 7 == 0:
             doubt = np.tile(np.diag([0.01, 0.01, 0.001]), (len(claims), 1, 1))
             claims = replace(claims, sensor_pose_covariance=doubt)
-        if number % 5 == 0 and len(claims):
-            looks = rng.dirichlet(np.ones(4), len(claims))
-            claims = replace(claims, appearance=looks)
         views = {
             "view": View(pose, 1.5, 8.0) if number % 3 else None,
             "scan_view": View(pose, 4.0) if number % 2 else None,
