@@ -345,7 +345,7 @@ class Config(BaseModel):
     )  # fmt: skip
     range_std_m: float = _parameter(
         0.08, "Range noise of a person in the scan: the scanner's own, and legs are no point.",
-        unit="m", group="ranging", live=True, gt=0.0, le=2.0,
+        unit="m", group="ranging", live=True, ge=0.001, le=2.0,
         search=Search("measurement", 0.02, 0.6, log=True),
     )  # fmt: skip
     hand_offset_std_m: float = _parameter(

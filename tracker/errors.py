@@ -3,6 +3,7 @@
     TrackerError
         ConfigError        a parameter file or value (also a ValueError)
         ShapeError         arrays that disagree in shape (also a ValueError)
+        MeasurementError   a measurement that no tracker can use (also a ValueError)
         CovarianceError    a covariance that is none (also a ValueError)
         ClockError         stamps that no tracker can live with (also a ValueError)
         TransformError     no transform between two frames at a stamp (also a LookupError)
@@ -28,6 +29,10 @@ class ConfigError(TrackerError, ValueError):
 
 class ShapeError(TrackerError, ValueError):
     """Arrays that belong together disagree in shape."""
+
+
+class MeasurementError(TrackerError, ValueError):
+    """A measurement holds numbers that no tracker can use."""
 
 
 class CovarianceError(TrackerError, ValueError):

@@ -221,7 +221,7 @@ class Pipeline:
             background=self._background if self.config.background_after_s > 0.0 else None,
             people=people,
         )
-        beyond = int(np.isnan(measurements.values[:, 0]).sum())
+        beyond = len(hands) - np.count_nonzero(measurements.hand >= 0)
         if beyond:
             end_deg = np.rad2deg(self.camera.lens.max_off_axis_rad)
             text = f"{beyond} hands beyond the lens's range of {end_deg:.0f} degrees: no bearing"

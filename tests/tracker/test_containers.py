@@ -9,15 +9,14 @@ import pytest
 from tracker.containers import (
     CameraImage,
     Hands,
-    MeasurementModel,
     Measurements,
     Pose,
     Scan,
+    SensorKind,
     Tracks,
     Truth,
 )
 from tracker.errors import ClockError, ShapeError
-from tracker.tracking import PersonTracker
 
 
 def hands(count):
@@ -202,6 +201,12 @@ def test_selecting_rows_gives_a_batch_again(rows, ids):
     np.testing.assert_array_equal(chosen.mean[:, 0], 4.0 * (np.array(ids, float) - 10))
 
 
+@pytest.mark.parametrize("rows", [np.zeros((2, 2), int), None], ids=["table", "none"])
+def test_rows_that_are_no_list_are_refused(rows):
+    with pytest.raises(ShapeError, match="a mask, a slice or a list"):
+        tracks(3)[rows]
+
+
 def test_the_row_of_a_person_is_found_by_identity():
     batch = tracks(3)
     assert batch.row_of(12) == 2
@@ -231,20 +236,46 @@ def test_polar_claims_take_one_number_for_all_rows():
     np.testing.assert_array_equal(claims.values, [[0.1, 2.0], [0.2, 2.0]])
     np.testing.assert_allclose(claims.covariance[1], [[1e-4, 0.0], [0.0, 0.09]])
     np.testing.assert_array_equal(claims.sensor_pose, [[1.0, 2.0, 3.0]] * 2)
-    assert claims.model.tolist() == [MeasurementModel.POLAR] * 2
+    assert claims.kind.tolist() == [SensorKind.BEARING_RANGE] * 2
     assert claims.raised.all()
-    assert claims.person.tolist() == claims.hand.tolist() == [-1, -1]
+    assert claims.person.tolist() == claims.hand.tolist() == claims.identity.tolist() == [-1, -1]
 
 
-def test_a_range_of_nan_means_bearing_only_and_leaves_a_finite_covariance():
-    claims = Measurements.polar([0.1, 0.2], [math.nan, 2.0], 0.01, [math.nan, 0.1])
-    assert np.isnan(claims.values[:, 1]).tolist() == [True, False]
-    assert np.all(np.isfinite(claims.covariance))
-    assert np.all(np.linalg.eigvalsh(claims.covariance) > 0)
+def test_what_is_nan_decides_the_kind_row_by_row():
+    claims = Measurements.polar(
+        [0.1, 0.2, math.nan], [math.nan, 2.0, 3.0], [0.02, 0.02, math.nan], [math.nan, 0.1, 0.1]
+    )
+    assert claims.kind.tolist() == [SensorKind.BEARING, SensorKind.BEARING_RANGE, SensorKind.RANGE]
+    np.testing.assert_array_equal(claims.values, [[0.1, math.nan], [0.2, 2.0], [math.nan, 3.0]])
+    np.testing.assert_allclose(
+        claims.covariance[:, [0, 1], [0, 1]], [[4e-4, 1.0], [4e-4, 0.01], [1.0, 0.01]]
+    )
+    assert not claims.covariance[:, [0, 1], [1, 0]].any()
+
+
+def test_bearings_and_ranges_alone_are_polar_claims_without_the_other():
+    doubt = np.diag([0.01, 0.01, 0.0])
+    details = {"raised": False, "identity": [7, 8], "sensor_pose_covariance": doubt}
+    bearings = Measurements.bearings([0.1, 0.2], 0.02, (1.0, 2.0, 3.0), **details)
+    ranges = Measurements.ranges([3.0, 4.0], [0.1, 0.2], np.eye(3)[:2], **details)
+    assert bearings.kind.tolist() == [SensorKind.BEARING] * 2
+    assert ranges.kind.tolist() == [SensorKind.RANGE] * 2
+    np.testing.assert_array_equal(bearings.values[:, 0], [0.1, 0.2])
+    np.testing.assert_array_equal(ranges.values[:, 1], [3.0, 4.0])
+    np.testing.assert_array_equal(ranges.sensor_pose, np.eye(3)[:2])
+    for claims in (bearings, ranges):
+        assert claims.identity.tolist() == [7, 8]
+        assert not claims.raised.any()
+        np.testing.assert_array_equal(claims.sensor_pose_covariance, [doubt] * 2)
+
+
+def test_one_range_of_one_anchor_is_a_batch_of_one():
+    assert Measurements.ranges(3.0, 0.1).values[:, 1].tolist() == [3.0]
 
 
 def test_cartesian_claims_take_one_point_or_many():
     assert len(Measurements.cartesian([1.0, 2.0], np.eye(2))) == 1
+    assert len(Measurements.cartesian([], np.eye(2))) == 0
     claims = Measurements.cartesian(np.ones((3, 2)), np.eye(2), raised=[True, False, True])
     assert claims.covariance.shape == (3, 2, 2)
     assert claims.raised.tolist() == [True, False, True]
@@ -264,16 +295,13 @@ def test_a_column_of_another_length_is_refused_by_name(arguments, name):
 
 
 def test_joined_batches_keep_the_order_of_their_rows():
-    polar = Measurements.polar([0.1, 0.2], 2.0, 0.01, 0.1, person=[4, 5])
+    polar = Measurements.polar([0.1, 0.2], 2.0, 0.01, 0.1, person=[4, 5], identity=9)
     joined = Measurements.concatenate(
         polar, Measurements.none(), Measurements.cartesian([1.0, 2.0], np.eye(2))
     )
     assert joined.values[:, 0].tolist() == [0.1, 0.2, 1.0]
-    assert joined.model.tolist() == [0, 0, 1]
+    assert joined.kind.tolist() == [0, 0, 1]
     assert joined.person.tolist() == [4, 5, -1]
-
-
-@pytest.mark.parametrize("std", [2e154, 1e200, 1e308, float("inf")])
-def test_a_spread_whose_square_overflows_is_no_warning(std):
-    wide = Measurements.polar([0.1], [2.0], std, std, (0.0, 0.0, 0.0))
-    assert len(PersonTracker().step(0, wide)) == 0
+    assert joined.identity.tolist() == [9, 9, -1]
+    with pytest.raises(ValueError, match="read-only"):
+        joined.values[0] = 0.0

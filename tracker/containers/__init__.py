@@ -13,8 +13,9 @@ from tracker.containers.arrays import (
 )
 from tracker.containers.hands import Hands, Refusal
 from tracker.containers.located_scan import LocatedScan
-from tracker.containers.measurements import MeasurementModel, Measurements
+from tracker.containers.measurements import Measurements
 from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
+from tracker.containers.sensor_kind import SensorKind
 from tracker.containers.sensors import CameraImage, Scan
 from tracker.containers.tracks import Tracks
 
@@ -27,12 +28,12 @@ __all__ = [
     "ImageArray",
     "IntArray",
     "LocatedScan",
-    "MeasurementModel",
     "Measurements",
     "PerceptionWork",
     "Pose",
     "Refusal",
     "Scan",
+    "SensorKind",
     "Tracks",
     "Truth",
     "check_stamp",

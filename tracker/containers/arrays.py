@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import lru_cache
 from typing import Any, TypeAlias, TypeVar
 
@@ -67,7 +66,7 @@ def check_rows(batch: Any, count: int, layout: Layout) -> None:
         raise ShapeError(f"{type(batch).__name__} disagree in shape: {shapes}.")
 
 
-def trusted(kind: type[_Batch], **columns: Any) -> _Batch:
+def trusted(kind: type[_Batch], /, **columns: Any) -> _Batch:
     """A batch whose arrays are known to fit and to be read-only: nobody looks at them again.
 
     Frozen classes with slots are filled one call after the other, so these have none.
@@ -78,12 +77,23 @@ def trusted(kind: type[_Batch], **columns: Any) -> _Batch:
 
 
 def select(batch: _Batch, rows: Any) -> _Batch:
-    """The same batch with some rows alone; one number gives a batch of one."""
+    """The same batch with some rows alone; one number gives a batch of one.
+
+    Raises:
+        ShapeError: The rows are no mask, slice or list of numbers.
+    """
     if isinstance(rows, (int, np.integer)):
         rows = [rows]
-    values = {name: getattr(batch, name) for name in batch.__dataclass_fields__}  # type: ignore[attr-defined]
-    chosen = {name: each[rows] for name, each in values.items() if isinstance(each, np.ndarray)}
-    return replace(batch, **chosen)  # type: ignore[type-var]
+    chosen = dict(batch.__dict__)
+    for name, each in chosen.items():
+        if isinstance(each, np.ndarray):
+            part = each[rows]
+            if part.ndim != each.ndim:
+                raise ShapeError(
+                    f"Rows {rows!r} were asked for; needed: a mask, a slice or a list of numbers."
+                )
+            chosen[name] = sealed(part)
+    return trusted(type(batch), **chosen)
 
 
 @lru_cache(maxsize=64)
@@ -94,15 +104,26 @@ def constant(value: float, shape: tuple[int, ...], dtype: np.dtype[Any] = NUMBER
     return array
 
 
+def numbers(name: str, value: ArrayLike) -> FloatArray:
+    """An array of floating-point numbers.
+
+    Raises:
+        ShapeError: They are no numbers, or of ragged rows.
+    """
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ShapeError(f"`{name}` is {value!r}; needed is an array of numbers.") from error
+
+
 def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
     """Write numbers into an array that has its shape already.
 
     Raises:
-        ShapeError: They have another shape, and are not one for all either.
+        ShapeError: They have another shape and are not one for all either, or are no numbers.
     """
     try:
         column[...] = value
-    except ValueError as error:
-        raise ShapeError(
-            f"`{name}` has shape {np.shape(value)}; needed is {column.shape}."
-        ) from error
+    except (TypeError, ValueError, OverflowError) as error:
+        shape = numbers(name, value).shape
+        raise ShapeError(f"`{name}` has shape {shape}; needed is {column.shape}.") from error

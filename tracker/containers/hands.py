@@ -70,7 +70,7 @@ _WORDS = {
 }
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Hands:
     """Every hand found in one image; row i of each array is the same hand.
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from enum import IntEnum
-from typing import Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,65 +18,97 @@ from tracker.containers.arrays import (
     check_rows,
     constant,
     fill,
+    frozen,
+    numbers,
     sealed,
     select,
     trusted,
 )
+from tracker.containers.measurement_check import Refuse, check_measurements, usable_rows
+from tracker.containers.sensor_kind import SensorKind
+from tracker.errors import MeasurementError, ShapeError
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 _LAYOUT = {
     "values": (NUMBERS, (2,)),
     "covariance": (NUMBERS, (2, 2)),
-    "model": (COUNTS, ()),
+    "kind": (COUNTS, ()),
     "sensor_pose": (NUMBERS, (3,)),
     "raised": (FLAGS, ()),
     "person": (COUNTS, ()),
     "hand": (COUNTS, ()),
     "sensor_pose_covariance": (NUMBERS, (3, 3)),
+    "identity": (COUNTS, ()),
 }
 _ORIGIN = constant(0.0, (3,))
+#: Of a bearing and a range: the kind, by whether the bearing and whether the range is NaN.
+_KIND_BY_MISSING = np.array(
+    [[SensorKind.BEARING_RANGE, SensorKind.BEARING], [SensorKind.RANGE, SensorKind.BEARING]]
+)
 
 
-class MeasurementModel(IntEnum):
-    """How a measurement's two numbers are read."""
+class _Details(TypedDict, total=False):
+    """What `bearings` and `ranges` hand on to `polar`."""
 
-    POLAR = 0
-    CARTESIAN = 1
+    raised: ArrayLike
+    person: ArrayLike
+    hand: ArrayLike
+    identity: ArrayLike
+    sensor_pose_covariance: ArrayLike | None
+    refuse: Refuse
 
 
 @dataclass(frozen=True, eq=False)
 class Measurements:
     """What the sensors claim about people at one instant; row i of each array is one claim.
 
+    A tracker can use every row: numbers are finite and below 1e9, covariances are positive
+    definite. What cannot be used is refused where it is made.
+
     Attributes:
-        values: Shape (M, 2). Polar: bearing_rad (counter-clockwise in the sensor's frame) and
-            range_m, where a NaN range means "bearing only". Cartesian: x_m, y_m in the fixed
-            frame.
-        covariance: Shape (M, 2, 2), in the units of `values`.
-        model: Shape (M,), `MeasurementModel`.
+        values: Shape (M, 2). Bearing and range: bearing_rad (counter-clockwise in the sensor's
+            frame) and range_m, NaN in the place of what the kind does not have. Position: x_m,
+            y_m in the fixed frame.
+        covariance: Shape (M, 2, 2), in the units of `values`; 1 without correlation in the place
+            of what the kind does not have.
+        kind: Shape (M,), `SensorKind`.
         sensor_pose: Shape (M, 3): x_m, y_m, yaw_rad of the sensor in the fixed frame.
         raised: Shape (M,), bool: a raised hand is behind it. Only such measurements create
             customers and feed the streaks; others (lowered hands, person clusters of the scan)
             sustain and refine customers that exist.
         person: Shape (M,), int64: claims that share a non-negative number come from the same body
-            (the same scan segment); -1 where nobody knows.
+            (the same scan segment) at this instant; negative where nobody knows.
         hand: Shape (M,), int64: row of the image's `Hands`, or -1.
         sensor_pose_covariance: Shape (M, 3, 3), of `sensor_pose`; None means zeros (well known).
+        identity: Shape (M,), int64: claims that share a non-negative number come from the same
+            person at all times, such as the number of a tag; negative where nobody knows. None
+            means -1 everywhere.
+
+    Raises:
+        ShapeError: The arrays disagree in length.
+        MeasurementError: A tracker cannot use a row; see `tracker.containers.measurement_check`.
     """
 
     values: FloatArray
     covariance: FloatArray
-    model: IntArray
+    kind: IntArray
     sensor_pose: FloatArray
     raised: BoolArray
     person: IntArray
     hand: IntArray
     sensor_pose_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
+    identity: IntArray = None  # type: ignore[assignment]  # -1 takes its place
 
     def __post_init__(self) -> None:
         count = len(self.values)
         if self.sensor_pose_covariance is None:
             object.__setattr__(self, "sensor_pose_covariance", constant(0.0, (count, 3, 3)))
+        if self.identity is None:
+            object.__setattr__(self, "identity", constant(-1, (count,), COUNTS))
         check_rows(self, count, _LAYOUT)
+        check_measurements(self)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -101,44 +132,79 @@ class Measurements:
         raised: ArrayLike = True,
         person: ArrayLike = -1,
         hand: ArrayLike = -1,
+        identity: ArrayLike = -1,
+        sensor_pose_covariance: ArrayLike | None = None,
+        refuse: Refuse = "raise",
     ) -> Measurements:
-        """Bearings and ranges seen from a sensor.
+        """Bearings and ranges seen from a sensor; either may be NaN where it is not known.
 
         Args:
-            bearing_rad: Shape (M,), counter-clockwise from the sensor's x axis.
+            bearing_rad: Shape (M,), counter-clockwise from the sensor's x axis; NaN where only the
+                range is known.
             range_m: Shape (M,) or one number; NaN where only the bearing is known.
-            bearing_std_rad: Shape (M,) or one number.
+            bearing_std_rad: Shape (M,) or one number; ignored where the bearing is NaN.
             range_std_m: Shape (M,) or one number; ignored where the range is NaN.
             sensor_pose: x_m, y_m, yaw_rad of the sensor in the fixed frame, shape (3,) or (M, 3).
             raised: Shape (M,) or one truth value.
             person: Shape (M,) or one number; see the class.
             hand: Shape (M,) or one number; see the class.
+            identity: Shape (M,) or one number; see the class.
+            sensor_pose_covariance: Shape (3, 3) or (M, 3, 3); None where the pose is well known.
+            refuse: What becomes of rows that a tracker cannot use: "raise" an error, or "drop"
+                them.
 
         Raises:
-            ShapeError: The arrays disagree in length.
+            ShapeError: The arrays disagree in length, or are not numbers.
+            MeasurementError: A tracker cannot use a row.
         """
-        bearing = np.asarray(bearing_rad, dtype=np.float64)
+        bearing = numbers("bearing_rad", bearing_rad)
         count = bearing.size
         values, covariance = np.empty((count, 2)), np.zeros((count, 2, 2))
-        distance, spread = values[:, 1], covariance[:, 1, 1]
         fill("bearing_rad", values[:, 0], bearing)
-        fill("range_m", distance, range_m)
+        fill("range_m", values[:, 1], range_m)
         fill("bearing_std_rad", covariance[:, 0, 0], bearing_std_rad)
-        fill("range_std_m", spread, range_std_m)
-        with np.errstate(over="ignore"):  # an infinite variance says nothing, and is passed over
-            covariance *= covariance
-        np.copyto(spread, 1.0, where=np.isnan(distance))
-        return trusted(
-            Measurements,
+        fill("range_std_m", covariance[:, 1, 1], range_std_m)
+        with np.errstate(over="ignore"):  # the check refuses an infinite variance
+            covariance *= np.abs(covariance)  # and a negative one, so the sign stays
+        return _made(
+            refuse,
             values=sealed(values),
+            kind=_kinds(values, covariance),
             covariance=sealed(covariance),
-            model=constant(MeasurementModel.POLAR, (count,), COUNTS),
             sensor_pose=_poses(sensor_pose, count),
             raised=_column("raised", raised, count, FLAGS),
             person=_column("person", person, count, COUNTS),
             hand=_column("hand", hand, count, COUNTS),
-            sensor_pose_covariance=constant(0.0, (count, 3, 3)),
+            sensor_pose_covariance=_doubts(sensor_pose_covariance, count),
+            identity=_column("identity", identity, count, COUNTS),
         )
+
+    @staticmethod
+    def bearings(
+        bearing_rad: ArrayLike,
+        bearing_std_rad: ArrayLike,
+        sensor_pose: ArrayLike = _ORIGIN,
+        **details: Unpack[_Details],
+    ) -> Measurements:
+        """Bearings alone, as of a camera; `polar` says what the arguments are."""
+        return Measurements.polar(
+            bearing_rad, np.nan, bearing_std_rad, 1.0, sensor_pose, **details
+        )
+
+    @staticmethod
+    def ranges(
+        range_m: ArrayLike,
+        range_std_m: ArrayLike,
+        sensor_pose: ArrayLike = _ORIGIN,
+        **details: Unpack[_Details],
+    ) -> Measurements:
+        """Ranges alone, as of an ultrasonic sensor or the anchors of a tag.
+
+        `polar` says what the arguments are.
+        """
+        distance = numbers("range_m", range_m)
+        unknown = np.full(distance.size, np.nan)
+        return Measurements.polar(unknown, distance, 1.0, range_std_m, sensor_pose, **details)
 
     @staticmethod
     def cartesian(
@@ -148,42 +214,77 @@ class Measurements:
         raised: ArrayLike = True,
         person: ArrayLike = -1,
         hand: ArrayLike = -1,
+        identity: ArrayLike = -1,
+        refuse: Refuse = "raise",
     ) -> Measurements:
         """Positions in the fixed frame.
 
         Args:
-            xy_m: Shape (M, 2).
+            xy_m: Shape (M, 2), or (2,) for one.
             covariance: Shape (2, 2) or (M, 2, 2), in square meters.
             raised: Shape (M,) or one truth value.
             person: Shape (M,) or one number; see the class.
             hand: Shape (M,) or one number; see the class.
+            identity: Shape (M,) or one number; see the class.
+            refuse: As in `polar`.
 
         Raises:
-            ShapeError: The arrays disagree in length.
+            ShapeError: The arrays disagree in length, or are not numbers.
+            MeasurementError: A tracker cannot use a row.
         """
-        xy = np.asarray(xy_m, dtype=np.float64)
-        xy = xy[None, :] if xy.ndim == 1 else xy
+        xy = numbers("xy_m", xy_m)
+        if xy.ndim == 1 and xy.size in (0, 2):
+            xy = xy.reshape(-1, 2)
+        if xy.ndim != 2 or xy.shape[1] != 2:
+            raise ShapeError(f"`xy_m` has shape {xy.shape}; needed is (M, 2), a row for each.")
         count = len(xy)
         spread = np.empty((count, 2, 2))
         fill("covariance", spread, covariance)
-        return Measurements(
-            values=xy,
-            covariance=spread,
-            model=constant(MeasurementModel.CARTESIAN, (count,), COUNTS),
+        return _made(
+            refuse,
+            values=frozen(xy),
+            covariance=sealed(spread),
+            kind=constant(SensorKind.POSITION, (count,), COUNTS),
             sensor_pose=constant(0.0, (count, 3)),
             raised=_column("raised", raised, count, FLAGS),
             person=_column("person", person, count, COUNTS),
             hand=_column("hand", hand, count, COUNTS),
+            sensor_pose_covariance=constant(0.0, (count, 3, 3)),
+            identity=_column("identity", identity, count, COUNTS),
         )
 
     @staticmethod
     def concatenate(*parts: Measurements) -> Measurements:
         """Join batches of one instant, rows in the order given."""
         joined = {
-            item.name: np.concatenate([getattr(part, item.name) for part in parts])
-            for item in fields(Measurements)
+            name: sealed(np.concatenate([getattr(part, name) for part in parts]))
+            for name in _LAYOUT
         }
-        return Measurements(**joined)
+        return trusted(Measurements, **joined)
+
+
+def _made(refuse: Refuse, **columns: Any) -> Measurements:
+    """Columns that fit as one batch, of which a tracker can use every row."""
+    claims = trusted(Measurements, **columns)
+    if refuse == "drop":
+        usable = usable_rows(claims)
+        return claims if usable.all() else claims[usable]
+    if refuse != "raise":
+        raise MeasurementError(f"`refuse` is {refuse!r}; needed is 'raise' or 'drop'.")
+    check_measurements(claims)
+    return claims
+
+
+def _kinds(values: FloatArray, covariance: FloatArray) -> IntArray:
+    """Kinds of bearings and ranges by what is NaN, in whose place the variance becomes 1."""
+    count, missing = len(values), np.isnan(values)
+    if np.count_nonzero(missing) == 0:
+        return constant(SensorKind.BEARING_RANGE, (count,), COUNTS)
+    np.copyto(covariance.reshape(-1, 4)[:, ::3], 1.0, where=missing)
+    if np.count_nonzero(missing[:, 1]) == count:
+        return constant(SensorKind.BEARING, (count,), COUNTS)
+    no_bearing, no_range = missing.view(np.uint8).T
+    return sealed(_KIND_BY_MISSING[no_bearing, no_range])
 
 
 def _poses(sensor_pose: ArrayLike, count: int) -> FloatArray:
@@ -194,9 +295,28 @@ def _poses(sensor_pose: ArrayLike, count: int) -> FloatArray:
     return sealed(poses)
 
 
+def _doubts(sensor_pose_covariance: ArrayLike | None, count: int) -> FloatArray:
+    if sensor_pose_covariance is None:
+        return constant(0.0, (count, 3, 3))
+    doubts = np.empty((count, 3, 3))
+    fill("sensor_pose_covariance", doubts, sensor_pose_covariance)
+    return sealed(doubts)
+
+
 def _column(name: str, value: ArrayLike, count: int, dtype: np.dtype[Any]) -> NDArray[Any]:
-    if isinstance(value, (bool, int)):
+    if isinstance(value, (bool, int)) and -1 <= value < 2**63:
         return constant(value, (count,), dtype)
     column = np.empty(count, dtype)
-    fill(name, column, value)
+    fill(name, column, _whole(name, value) if dtype == COUNTS else value)
     return sealed(column)
+
+
+def _whole(name: str, value: ArrayLike) -> ArrayLike:
+    if isinstance(value, np.ndarray) and value.dtype.kind in "bi":
+        return value
+    number = numbers(name, value)
+    if not ((number == np.floor(number)) & (np.abs(number) < 2.0**63)).all():
+        raise MeasurementError(
+            f"`{name}` is {value!r}; needed are whole numbers below 2^63, -1 where nobody knows."
+        )
+    return value

@@ -15,6 +15,9 @@ from tracker.ranging.person_range import owners
 from tracker.ranging.ray_range import range_along_rays
 from tracker.ranging.rays import HandRays, hand_rays
 
+#: A body so wide or near that its bearing could be any: that of an even spread over the circle.
+_BEARING_STD_MAX_RAD = float(np.pi / np.sqrt(3.0))
+_RANGE_MIN_M = 0.05
 #: Numbers of picture pairs (`Measurements.person`) start here, above any cluster's row.
 _PAIR_OFFSET = 1_000_000
 
@@ -46,8 +49,8 @@ def measure_people(
         people: From `scan_people`, where that has been asked already.
 
     Returns:
-        First one row for each hand, then the clusters that no hand has claimed and that are no
-        background.
+        First one row for each hand whose direction is known, then the clusters that no hand has
+        claimed and that are no background. Rows that no tracker could use are left out.
     """
     rays = hand_rays(hands, camera, fixed_from_camera, config)
     pair = pair_hands(hands)
@@ -68,8 +71,9 @@ def measure_people(
         claimed = owners(rays, hands, camera, people, is_background, config.arm_reach_m)
         range_m = np.full(len(hands), np.nan)
 
-    from_hands = _hand_measurements(rays, range_m, hands, pair, config)
     seen = claimed >= 0
+    alone = np.flatnonzero(~seen & np.isfinite(rays.bearing_rad))
+    from_hands = _hand_measurements(alone, rays, range_m, hands, pair, config)
     if seen.any():
         # The body itself is measured: the ray has only said which of them it is.
         of_bodies = _body_measurements(
@@ -80,7 +84,7 @@ def measure_people(
             person=claimed[seen],
             hand=np.flatnonzero(seen),
         )
-        from_hands = Measurements.concatenate(from_hands[~seen], of_bodies)
+        from_hands = Measurements.concatenate(from_hands, of_bodies)
     callers = claimed[hands.raised & seen]
     if background is not None:
         background.free(people.xy_m[callers])
@@ -108,21 +112,27 @@ def scan_people(scan: LocatedScan | None, config: Config) -> PersonClusters:
 
 
 def _hand_measurements(
-    rays: HandRays, range_m: FloatArray, hands: Hands, pair: IntArray, config: Config
+    rows: IntArray,
+    rays: HandRays,
+    range_m: FloatArray,
+    hands: Hands,
+    pair: IntArray,
+    config: Config,
 ) -> Measurements:
     """The hand's own ray; the body stands somewhere beside it, closer to that of its torso."""
     supposed_m = np.where(np.isnan(range_m), config.unknown_range_m, range_m)
     offset_m = np.where(hands.is_owned, config.torso_offset_std_m, config.hand_offset_std_m)
     offset_std = np.arctan2(offset_m, np.maximum(supposed_m, 0.3))
     return Measurements.polar(
-        rays.bearing_rad,
-        range_m,
-        np.hypot(rays.bearing_std_rad, offset_std),
+        rays.bearing_rad[rows],
+        range_m[rows],
+        np.hypot(rays.bearing_std_rad, offset_std)[rows],
         config.range_std_m,
         rays.origin,
-        raised=hands.raised,
-        person=pair,
-        hand=np.arange(len(hands)),
+        raised=hands.raised[rows],
+        person=pair[rows],
+        hand=rows,
+        refuse="drop",
     )
 
 
@@ -137,9 +147,26 @@ def _body_measurements(
 ) -> Measurements:
     """Person clusters as bearing and range from the camera, noise alike in both directions."""
     offset = xy_m - origin[:2]
-    range_m = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), 0.05)
+    range_m = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), _RANGE_MIN_M)
     bearing = normalize_angle(np.arctan2(offset[:, 1], offset[:, 0]) - origin[2])
-    std = config.range_std_m
     return Measurements.polar(
-        bearing, range_m, std / range_m, std, origin, raised=raised, person=person, hand=hand
+        bearing,
+        range_m,
+        body_bearing_std_rad(range_m, config.range_std_m),
+        config.range_std_m,
+        origin,
+        raised=raised,
+        person=person,
+        hand=hand,
+        refuse="drop",
     )
+
+
+def body_bearing_std_rad(range_m: FloatArray, std_m: float) -> FloatArray:
+    """Bearing noise of bodies that a scan has shown to the same length in both directions.
+
+    Args:
+        range_m: Shape (M,).
+        std_m: Standard deviation of their place, along and across.
+    """
+    return np.minimum(std_m / np.maximum(range_m, _RANGE_MIN_M), _BEARING_STD_MAX_RAD)

@@ -7,7 +7,7 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
-from tracker.containers import FloatArray, FrameResult, ImageArray, MeasurementModel
+from tracker.containers import FloatArray, FrameResult, ImageArray, SensorKind
 from tracker.report.palette import FADED, INK, LIT, PAPER, ROBOT, WALL, as_bgr, person_color
 
 #: Camera of the specification: 640 columns at a focal length of 460.
@@ -98,7 +98,8 @@ class _View:
 
     def draw_rays(self, picture: ImageArray, result: FrameResult) -> None:
         claims = result.measurements
-        for row in np.flatnonzero(claims.raised & (claims.model == MeasurementModel.POLAR)):
+        has_bearing = np.isin(claims.kind, (SensorKind.BEARING_RANGE, SensorKind.BEARING))
+        for row in np.flatnonzero(claims.raised & has_bearing):
             x, y, yaw = claims.sensor_pose[row]
             bearing, range_m = claims.values[row]
             length = range_m if np.isfinite(range_m) else 2 * float(self._size.max()) / self._scale

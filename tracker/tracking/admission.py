@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray, MeasurementModel, Measurements
+from tracker.containers import BoolArray, FloatArray, Measurements, SensorKind
+from tracker.containers.measurement_check import (
+    ABSURD_M,
+    BEARING_VARIANCE_MAX,
+    VARIANCE_MAX,
+    VARIANCE_MIN,
+)
 from tracker.tracking.filter import positions
 
-#: Farther than this from the fixed frame's origin there is no person, and less or more than these
-#: variances no sensor claims; beyond them squares overflow.
-ABSURD_M = 1e9
-VARIANCE_MIN, VARIANCE_MAX = 1e-12, 1e9
-#: A bearing with a wider variance than a full turn's says nothing.
-BEARING_VARIANCE_MAX = (2.0 * np.pi) ** 2
 #: A hand that is up may be so far from where its owner is expected (guess).
 CALLER_REACH_M = 0.7
 #: Frames closer together than this are as one where errors are alike.
@@ -28,7 +28,7 @@ def usable(measurements: Measurements) -> BoolArray:
         return np.ones(len(measurements), dtype=bool)
     values, covariance = measurements.values, measurements.covariance
     first, second, mixed = covariance[:, 0, 0], covariance[:, 1, 1], covariance[:, 0, 1]
-    polar = measurements.model == MeasurementModel.POLAR
+    polar = measurements.kind != SensorKind.POSITION
     far = np.abs(values) < ABSURD_M  # NaN compares as false, which is what is meant throughout
     pose = np.abs(measurements.sensor_pose).max(axis=1, initial=0.0) < ABSURD_M
     sane = far[:, 0] & (far[:, 1] | (polar & np.isnan(values[:, 1]))) & pose
@@ -60,7 +60,7 @@ def _is_plain(measurements: Measurements) -> bool:
         and high_second < VARIANCE_MAX
         and np.abs(measurements.values).max() < ABSURD_M
         and np.abs(measurements.sensor_pose).max() < ABSURD_M
-        and (measurements.values[:, 1].min() >= 0.0 or measurements.model.all())
+        and (measurements.values[:, 1].min() >= 0.0 or measurements.kind.all())
     )
 
 

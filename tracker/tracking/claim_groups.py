@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracker.containers import FloatArray, IntArray, MeasurementModel, Measurements
+from tracker.containers import FloatArray, IntArray, Measurements, SensorKind
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,7 +45,7 @@ def group_claims(claims: Measurements) -> Iterator[ClaimGroup]:
     """
     if len(claims) == 0:
         return
-    kind = np.where(np.isnan(claims.values[:, 1]), -1, claims.model)
+    kind = claims.kind
     pose, doubt = claims.sensor_pose, claims.sensor_pose_covariance
     is_doubtful = bool(doubt.any())
     if (
@@ -67,12 +67,12 @@ def _group(claims: Measurements, rows: IntArray, kind: int, is_doubtful: bool) -
     # Nearly always it is all of them, and then nothing needs to be picked.
     picked = rows if len(rows) < len(claims) else slice(None)
     values, noise = claims.values[picked], claims.covariance[picked]
-    ranged = kind >= 0
+    ranged = kind != SensorKind.BEARING
     if not ranged:
         values, noise = values.copy(), noise.copy()
         values[:, 1] = 0.0
         noise[:, 1, :] = noise[:, :, 1] = 0.0
         noise[:, 1, 1] = 1.0
-    polar = kind != MeasurementModel.CARTESIAN
+    polar = kind != SensorKind.POSITION
     doubt = claims.sensor_pose_covariance[rows[0]] if polar and is_doubtful else None
     return ClaimGroup(rows, values, noise, polar, ranged, claims.sensor_pose[rows[0]], doubt)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel, Measurements
+from tracker.containers import BoolArray, FloatArray, IntArray, Measurements, SensorKind
 from tracker.geometry import normalize_angle
 from tracker.tracking.outliers import outlier_noise
 from tracker.tracking.sensor_model import RANGE_FLOOR_M, expect_cartesian, expect_polar, pose_noise
@@ -57,7 +57,7 @@ def update(
     """
     innovation, jacobian, noise = compare(mean, measurements)
     if outlier_dof > 0.0:
-        ranged = is_ranged(measurements.model, measurements.values)[:, None, None]
+        ranged = is_ranged(measurements.kind)[:, None, None]
         spread = jacobian @ covariance[..., :2, :2] @ np.swapaxes(jacobian, -1, -2)
         doubtful = outlier_noise(spread, innovation, noise, outlier_dof)
         noise = np.where(ranged, doubtful, noise)
@@ -78,7 +78,7 @@ def compare(
         (..., K, 2, 2); and the measurements' noise, of the same shape, with what the uncertainty
         of the sensor's pose adds to it.
     """
-    polar = measurements.model == MeasurementModel.POLAR
+    polar = measurements.kind != SensorKind.POSITION
     values, noise = measurements.values, measurements.covariance
     if polar.all():
         predicted, jacobian = expect_polar(mean, measurements.sensor_pose)
@@ -141,9 +141,9 @@ def correct(
     return mean + first * y0[..., None] + second * y1[..., None], posterior
 
 
-def is_ranged(model: IntArray, values: FloatArray) -> BoolArray:
+def is_ranged(kind: IntArray) -> BoolArray:
     """Shape (M,): claims that are a bearing and a range."""
-    return np.asarray((model == MeasurementModel.POLAR) & ~np.isnan(values[:, 1]))
+    return np.asarray(kind == SensorKind.BEARING_RANGE)
 
 
 def initial_state(
@@ -168,7 +168,7 @@ def initial_state(
     mean = np.zeros((count, 4))
     covariance = np.zeros((count, 4, 4))
     covariance[:, [2, 3], [2, 3]] = speed_std_mps**2
-    polar = measurements.model == MeasurementModel.POLAR
+    polar = measurements.kind != SensorKind.POSITION
     bearing_only = polar & np.isnan(measurements.values[:, 1])
     mean[:, :2] = positions(measurements, unknown_range_m)
 
@@ -195,7 +195,7 @@ def initial_state(
 def positions(measurements: Measurements, unknown_range_m: float) -> FloatArray:
     """Where claims are in the fixed frame, shape (M, 2); bearings at a supposed range."""
     values, pose = measurements.values, measurements.sensor_pose
-    polar = measurements.model == MeasurementModel.POLAR
+    polar = measurements.kind != SensorKind.POSITION
     if not polar.any():
         return values
     range_m = np.where(np.isnan(values[:, 1]), unknown_range_m, values[:, 1])

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.special import gammaln
 
 from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel, Measurements
+from tracker.containers import BoolArray, FloatArray, IntArray, Measurements, SensorKind
 from tracker.tracking.filter import compare
 from tracker.tracking.gating import Pairs
 from tracker.tracking.modes import Belief
@@ -126,7 +126,7 @@ def log_densities(round_: Round, pairs: Pairs) -> FloatArray:
     dof = round_.config.outlier_dof
     if dof > 0.0:
         claims = round_.claims[pairs.claim]
-        tailed = (claims.model == MeasurementModel.POLAR) & ~np.isnan(claims.values[:, 1])
+        tailed = claims.kind == SensorKind.BEARING_RANGE
         tail = gammaln((dof + 1.0) / 2.0) - gammaln(dof / 2.0) - 0.5 * np.log(dof / 2.0)
         density = density + np.where(tailed, tail, 0.0)
     return np.asarray(density)

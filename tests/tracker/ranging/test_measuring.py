@@ -82,6 +82,29 @@ def test_of_two_people_beside_the_hand_the_one_at_whom_the_thumb_points(
     assert positions(found)[0] == pytest.approx([1.5, owner_y], abs=0.06)
 
 
+def test_a_hand_whose_direction_is_unknown_is_not_measured_and_others_keep_their_row():
+    hands = hands_toward((2.0, 0.5), (2.0, 0.0), (2.0, -0.5))
+    landmarks = np.array(hands.landmarks_px)
+    landmarks[1, :, 0] = np.nan
+    found = measure_people(
+        replace(hands, landmarks_px=landmarks), CAMERA, AT_ORIGIN, None, Config(ranging="spec")
+    )
+    assert found.hand.tolist() == [0, 2]
+
+
+def test_a_camera_at_an_absurd_place_measures_nobody(cast, legs):
+    nowhere = RigidTransform((9e9, 0.0, 0.0))
+    scan = cast(legs(2.0, 0.0))
+    assert len(measure_people(hands_toward((2.0, 0.0)), CAMERA, nowhere, scan, Config())) == 0
+
+
+def test_of_a_body_at_the_lens_the_bearing_is_as_good_as_unknown(cast, legs):
+    config = Config(range_std_m=2.0)
+    found = measure_people(Hands.none(), CAMERA, AT_ORIGIN, cast(legs(0.3, 0.0)), config)
+    assert len(found) == 1
+    assert np.sqrt(found.covariance[0, 0, 0]) == pytest.approx(np.pi / np.sqrt(3.0))
+
+
 def test_without_a_scan_the_hand_is_a_bearing_only():
     found = measure_people(hands_toward((2.0, 0.5)), CAMERA, AT_ORIGIN, None, Config())
     assert found.values[0, 0] == pytest.approx(np.arctan2(0.5, 2.0))

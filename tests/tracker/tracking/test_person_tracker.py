@@ -233,8 +233,7 @@ def test_changed_parameters_keep_the_tracks():
 def test_no_well_typed_input_breaks_a_step(values, noise, stamp_ns):
     tracker = PersonTracker()
     run(tracker, [raised_at((2, 1), (1, 0))] * 3)
-    with np.errstate(all="ignore"):
-        tracker.step(stamp_ns, Measurements.cartesian(values, noise))
+    tracker.step(stamp_ns, Measurements.cartesian(values, noise, refuse="drop"))
     tracks = tracker.step(stamp_ns, raised_at((2, 1)))
     assert np.isfinite(tracks.mean).all()
     assert (np.linalg.eigvalsh(tracks.covariance) > 0).all()

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
 from hypothesis import given, settings
@@ -75,16 +77,7 @@ def test_the_noise_of_the_sensor_s_pose_is_its_first_order_propagation():
 def test_an_uncertain_pose_makes_the_posterior_less_certain():
     mean, covariance = random_tracks(np.random.default_rng(6), 1)
     sure = Measurements.polar(0.3, 3.0, 0.02, 0.05)
-    unsure = Measurements(
-        sure.values,
-        sure.covariance,
-        sure.model,
-        sure.sensor_pose,
-        sure.raised,
-        sure.person,
-        sure.hand,
-        np.diag([0.01, 0.01, 0.01])[None],
-    )
+    unsure = replace(sure, sensor_pose_covariance=np.diag([0.01, 0.01, 0.01])[None])
     gained = update(mean, covariance, unsure)[1] - update(mean, covariance, sure)[1]
     assert np.linalg.eigvalsh(gained)[0, -1] > 1e-3
     assert np.linalg.eigvalsh(gained)[0, 0] > -1e-9

@@ -11,12 +11,14 @@ from dataclasses import replace
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import MeasurementModel, Measurements
+from tracker.containers import Measurements, SensorKind
+from tracker.ranging.measuring import body_bearing_std_rad
 
 #: The parameters that ranging states noise by.
 STATED = ("range_std_m", "hand_offset_std_m")
 
-_RANGE_MIN_M = 0.05
+#: What is left of a bearing's noise where all of it was said to be the hand's offset.
+_PIXEL_VARIANCE_MIN = 1e-8
 
 
 def restate(
@@ -33,12 +35,11 @@ def restate(
         told_hand_offset_std_m: The offset that is in the bearings alone now; None leaves these
             alone.
     """
-    polar = measurements.model == MeasurementModel.POLAR
     range_m, noise = measurements.values[:, 1], np.array(measurements.covariance)
-    ranged, alone = polar & ~np.isnan(range_m), polar & np.isnan(range_m)
-    far_m = np.maximum(range_m[ranged], _RANGE_MIN_M)
+    ranged = measurements.kind == SensorKind.BEARING_RANGE
+    alone = measurements.kind == SensorKind.BEARING
     noise[ranged] = 0.0
-    noise[ranged, 0, 0] = (config.range_std_m / far_m) ** 2
+    noise[ranged, 0, 0] = body_bearing_std_rad(range_m[ranged], config.range_std_m) ** 2
     noise[ranged, 1, 1] = config.range_std_m**2
     if told_hand_offset_std_m is None:
         return replace(measurements, covariance=noise)
@@ -46,5 +47,5 @@ def restate(
         np.arctan2(offset_m, config.unknown_range_m) ** 2
         for offset_m in (told_hand_offset_std_m, config.hand_offset_std_m)
     )
-    noise[alone, 0, 0] = np.maximum(noise[alone, 0, 0] - told, 0.0) + stated
+    noise[alone, 0, 0] = np.maximum(noise[alone, 0, 0] - told, _PIXEL_VARIANCE_MIN) + stated
     return replace(measurements, covariance=noise)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel
-from tracker.tracking.admission import (
+from tracker.containers import BoolArray, FloatArray, IntArray, SensorKind
+from tracker.containers.measurement_check import (
     ABSURD_M,
     BEARING_VARIANCE_MAX,
-    CALLER_REACH_M,
     VARIANCE_MAX,
     VARIANCE_MIN,
 )
+from tracker.tracking.admission import CALLER_REACH_M
 from tracker.tracking.compiled.loop import loop, step
 
-_POLAR = int(MeasurementModel.POLAR)
+_POSITION = int(SensorKind.POSITION)
 
 
 @loop
@@ -69,7 +69,7 @@ def admit(
     for number in range(hands):
         row = raised[number]
         x, y = values[row, 0], values[row, 1]
-        if model[row] == _POLAR:
+        if model[row] != _POSITION:
             range_m = unknown_range_m if np.isnan(y) else y
             angle = x + pose[row, 2]
             x, y = pose[row, 0] + range_m * np.cos(angle), pose[row, 1] + range_m * np.sin(angle)
@@ -99,7 +99,7 @@ def _is_usable(
     values: FloatArray, covariance: FloatArray, model: IntArray, pose: FloatArray, row: int
 ) -> bool:
     first, second = covariance[row, 0, 0], covariance[row, 1, 1]
-    is_polar = model[row] == _POLAR
+    is_polar = model[row] != _POSITION
     # NaN compares as false, which is what is meant throughout.
     if not abs(values[row, 0]) < ABSURD_M:
         return False

@@ -60,7 +60,7 @@ def _claims(measurements: Measurements) -> Iterator[np.ndarray]:
     return map(
         np.ascontiguousarray,
         (
-            *(measurements.values, measurements.covariance, measurements.model),
+            *(measurements.values, measurements.covariance, measurements.kind),
             *(measurements.sensor_pose, measurements.raised, measurements.person),
             *(measurements.hand, doubt, may_enter),
         ),

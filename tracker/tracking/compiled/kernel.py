@@ -8,7 +8,7 @@ import numpy as np
 from numba import types
 
 from tracker.containers import BoolArray, FloatArray, IntArray
-from tracker.tracking.admission import BEARING_VARIANCE_MAX
+from tracker.containers.measurement_check import BEARING_VARIANCE_MAX
 from tracker.tracking.compiled.admission import admit
 from tracker.tracking.compiled.association import assign_pairs, marginals
 from tracker.tracking.compiled.correction import update_assigned, update_jointly

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel
+from tracker.containers import BoolArray, FloatArray, IntArray, SensorKind
 from tracker.tracking.compiled.loop import loop, step
 from tracker.tracking.compiled.prediction import TURN, merge_modes, wrapped
 from tracker.tracking.compiled.settings import Settings
 from tracker.tracking.outliers import ROUNDS
 from tracker.tracking.sensor_model import RANGE_FLOOR_M
 
-_POLAR, _CARTESIAN = int(MeasurementModel.POLAR), int(MeasurementModel.CARTESIAN)
-_BEARING = -1  # kind of a claim without a range
+_POLAR, _CARTESIAN = int(SensorKind.BEARING_RANGE), int(SensorKind.POSITION)
+_BEARING = int(SensorKind.BEARING)
 _WORD = 8  # truth values that are read at once
 _LOG_TURN = float(np.log(2.0 * np.pi))
 #: What is kept of each pair and mode, in this order: the innovation, its derivatives by x and y,
@@ -215,7 +215,7 @@ def _grouped(
     groups = 0
     for number in range(len(rows)):
         row = rows[number]
-        kind = _BEARING if np.isnan(values[row, 1]) else model[row]
+        kind = model[row]
         mine = -1
         for known in range(groups):
             if kinds[known] == kind and _is_same_sensor(row, leader[known], pose, doubt):

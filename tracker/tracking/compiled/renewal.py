@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, IntArray, MeasurementModel
+from tracker.containers import BoolArray, FloatArray, IntArray, SensorKind
 from tracker.tracking.compiled.life_cycle import count_detections, decide_who_stays
 from tracker.tracking.compiled.loop import loop
 from tracker.tracking.compiled.pairing import pose_doubt
@@ -27,7 +27,7 @@ from tracker.tracking.people import (
 from tracker.tracking.sensor_model import RANGE_FLOOR_M
 from tracker.tracking.twins import SILENT_S, TOGETHER_S
 
-_CARTESIAN = int(MeasurementModel.CARTESIAN)
+_CARTESIAN = int(SensorKind.POSITION)
 
 
 @loop

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from tracker import Config, Hands, Measurements, Scan
 from tracker.camera import CameraModel
@@ -43,3 +44,10 @@ def test_positions_keep_their_noise():
     claims = Measurements.cartesian([[1.0, 2.0]], 0.04 * np.eye(2))
     found = restate(claims, Config(range_std_m=0.3), 0.2)
     np.testing.assert_array_equal(found.covariance, claims.covariance)
+
+
+def test_noise_that_no_sensor_can_have_is_never_restated():
+    near = Measurements.polar([0.1, 0.2], [0.01, np.nan], 0.01, 0.1)
+    widest, surest = Config(range_std_m=2.0), Config(hand_offset_std_m=0.0)
+    assert restate(near, widest, 0.2).covariance[0, 0, 0] == pytest.approx(np.pi**2 / 3)
+    assert restate(near, surest, 0.2).covariance[1, 0, 0] == pytest.approx(1e-8)
