@@ -19,7 +19,7 @@ from tracker.wording import shown
 
 #: Parameters of earlier versions, which people's files still name, and why they went.
 _RETIRED = {
-    "appearance_weight": "the colors of clothes told people apart no better",
+    "appearance_weight": "the colors of clothes saved false raises and cost false customers",
     "measurement_model": "bearing and range are always compared where they were taken (polar)",
 }
 
