@@ -76,7 +76,7 @@ def _are_plain(claims: Measurements) -> bool:
     if len(claims) == 0:
         return True
     values, noise = claims.values, claims.covariance.reshape(-1, 4)
-    kinds = set(claims.kind.tolist())
+    doubt, kinds = claims.sensor_pose_covariance, set(claims.kind.tolist())
     if not kinds <= _KINDS:
         return False
     alone = kinds & _ALONE
@@ -93,7 +93,7 @@ def _are_plain(claims: Measurements) -> bool:
         and noise[:, ::3].min() > VARIANCE_MIN
         and (np.count_nonzero(noise[:, 1:3]) == 0 or _are_definite(noise, bool(alone)).all())
         and not (alone and np.count_nonzero(noise[:, ::3][absent] != 1.0))
-        and _are_semidefinite(claims.sensor_pose_covariance).all()
+        and (np.count_nonzero(doubt) == 0 or _are_semidefinite(doubt).all())
     )
 
 
@@ -224,8 +224,6 @@ def _faults_of_pose(claims: Measurements) -> Iterator[_Fault]:
 
 def _are_semidefinite(covariance: FloatArray) -> BoolArray:
     """Shape (M,): which of the matrices, shape (M, 3, 3), could be a covariance."""
-    if np.count_nonzero(covariance) == 0:
-        return np.ones(len(covariance), dtype=bool)
     finite = np.asarray((np.abs(covariance) < VARIANCE_MAX).all(axis=(1, 2)))
     safe = np.where(finite[:, None, None], covariance, 0.0)
     asymmetry = np.abs(safe - np.swapaxes(safe, 1, 2)).max(axis=(1, 2))
