@@ -10,7 +10,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
@@ -44,6 +44,7 @@ from tracker.messages.encode import header
 from tracker.messages.types import build, deserialize, serialize
 from tracker.parameter_file import is_ours, read_assignment, read_parameters
 from tracker.program import run_program
+from tracker.retired_parameters import without_retired
 
 _LOG_TYPE = "rcl_interfaces/msg/Log"
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
@@ -58,6 +59,7 @@ class DdsHandDetector:
         namespace: The node's.
         remaps: Rules `from:=to`.
         use_sim_time: Take the time from /clock.
+        remarks: Warnings that its log begins with.
 
     Raises:
         ConfigError: A name or a variable of the environment is none, or DDS cannot start.
@@ -71,6 +73,7 @@ class DdsHandDetector:
         namespace: str = "/",
         remaps: Iterable[str] = (),
         use_sim_time: bool = False,
+        remarks: Iterable[str] = (),
     ) -> None:
         self._sim_ns = 0
         self._use_sim_time = use_sim_time
@@ -81,6 +84,8 @@ class DdsHandDetector:
             complain=lambda text: self._log("warning", text),
         )
         self._rosout = self._node.publisher("/rosout", _LOG_TYPE, ROSOUT)
+        for remark in remarks:
+            self._log("warning", remark)
         self._publishers = {
             output: self._node.publisher(output.value, type_name, PROFILES[output])
             for output, type_name in OUTPUT_TYPES.items()
@@ -230,13 +235,18 @@ def command(
     from tracker.progress import compile_tracker_first, fetch_models_if_needed
 
     name = Names(NODE_NAME, namespace, remap or ()).full_node_name
-    config, sim_time = _parameters(params_file or [], param or [], name)
+    remarks: list[str] = []
+    config, sim_time = _parameters(params_file or [], param or [], name, remarks.append)
     errors = Console(stderr=True)
     fetch_models_if_needed(errors)
     compile_tracker_first(errors)
     with _stop_signals() as stop:
         node = DdsHandDetector(
-            config, namespace=namespace, remaps=remap or (), use_sim_time=use_sim_time or sim_time
+            config,
+            namespace=namespace,
+            remaps=remap or (),
+            use_sim_time=use_sim_time or sim_time,
+            remarks=remarks,
         )
         if not node.run(stop):
             sys.exit(1)
@@ -270,8 +280,12 @@ def _stop_signals() -> Iterator[threading.Event]:
             signal.signal(number, handler)
 
 
-def _parameters(files: list[Path], assignments: list[str], node: str) -> tuple[Config, bool]:
+def _parameters(
+    files: list[Path], assignments: list[str], node: str, remark: Callable[[str], object]
+) -> tuple[Config, bool]:
     """The configuration that files and assignments give to a node, and whether time is simulated.
+
+    Files may name retired parameters, for one remark; assigning one is a mistake.
 
     Raises:
         ConfigError: A file or an assignment is off.
@@ -279,6 +293,7 @@ def _parameters(files: list[Path], assignments: list[str], node: str) -> tuple[C
     found: dict[str, Any] = {}
     for path in files:
         found |= read_parameters(path, node)
+    found = without_retired(found, ", ".join(map(str, files)), remark)
     found |= dict(read_assignment(text, node) for text in assignments)
     sim_time = found.get("use_sim_time", False)
     if not isinstance(sim_time, bool):

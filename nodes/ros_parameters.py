@@ -17,6 +17,7 @@ from nodes.parameters import Descriptor, changed, descriptors
 from tracker.config import Config
 from tracker.errors import ConfigError
 from tracker.parameter_file import is_ours
+from tracker.retired_parameters import without_retired
 
 
 class RosParameters:
@@ -72,7 +73,8 @@ def _declared(node: Node, is_managed: bool) -> Config:
         for name, parameter in node.get_parameters_by_prefix("").items()
         if is_ours(name)
     }
-    config = Config.from_mapping(given, origin="parameters")
+    ours = without_retired(given, "parameters", node.get_logger().warning)
+    config = Config.from_mapping(ours, origin="parameters")
     for name in given:
         node.undeclare_parameter(name)
     for item in descriptors():

@@ -6,7 +6,10 @@ from this one model. The first group is the specification's table 1, by its own 
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,13 +18,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from tracker.errors import ConfigError
 from tracker.parameter_file import NODE_NAME as NODE_NAME  # where it is looked for
 from tracker.parameter_file import is_ours, read_parameters
+from tracker.retired_parameters import RETIRED, without_retired
 from tracker.wording import shown
 
-#: Parameters of earlier versions, which people's files still name, and why they went.
-_RETIRED = {
-    "appearance_weight": "the colors of clothes saved false raises and cost false customers",
-    "measurement_model": "bearing and range are always compared where they were taken (polar)",
-}
+#: Python's own warning, at the line that called `Config.from_yaml`.
+_WARN = partial(warnings.warn, stacklevel=3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -537,6 +538,14 @@ class Config(BaseModel):
         unit="s", group="node", live=True, ge=0.1, le=3600.0,
     )  # fmt: skip
 
+    @model_validator(mode="before")
+    @classmethod
+    def _none_is_retired(cls, values: dict[str, Any]) -> dict[str, Any]:
+        for name, why in RETIRED.items():
+            if name in values:
+                raise ValueError(f"parameter `{name}` is no longer there: {why}. Delete it")
+        return values
+
     @model_validator(mode="after")
     def _bounds_agree(self) -> Config:
         if (self.camera_width == 0) != (self.camera_height == 0):
@@ -584,23 +593,30 @@ class Config(BaseModel):
             raise ConfigError(f"{origin}: {reasons}") from error
 
     @classmethod
-    def from_yaml(cls, path: str | Path, node: str | None = None) -> Config:
+    def from_yaml(
+        cls,
+        path: str | Path,
+        node: str | None = None,
+        *,
+        remark: Callable[[str], object] = _WARN,
+    ) -> Config:
         """Read a ROS parameter file: `hand_detector: ros__parameters: ...`.
 
         Names with namespaces and wildcards (`/robot1/hand_detector`, `/**`) are understood as rcl
         does; other nodes' parameters in the same file are left alone, and so are ROS's own, such
-        as `use_sim_time`.
+        as `use_sim_time`. Parameters of earlier versions are left out, with a remark.
 
         Args:
             path: The file.
             node: Full name of the node; by default the one `hand_detector` that the file has.
+            remark: Takes that remark, one line; by default a warning (`warnings.warn`).
 
         Raises:
             ConfigError: The file cannot be read, is no such file, or a parameter is off.
         """
         found = read_parameters(Path(path), node)
         ours = {name: value for name, value in found.items() if is_ours(name)}
-        return cls.from_mapping(ours, origin=str(path))
+        return cls.from_mapping(without_retired(ours, str(path), remark), origin=str(path))
 
     def replace(self, **changes: Any) -> Config:
         """The same configuration with some parameters changed, checked again.
@@ -645,8 +661,6 @@ def parameter_search(name: str) -> Search | None:
 
 def _reason(item: Any) -> str:
     name = ".".join(map(str, item["loc"]))
-    if name in _RETIRED:
-        return f"parameter `{name}` is no longer there: {_RETIRED[name]}. Delete it"
     if name and name not in Config.model_fields:
         return f"unknown parameter `{name}`{_suggestion(name)}"
     if not name:

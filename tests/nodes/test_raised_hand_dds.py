@@ -33,11 +33,11 @@ def given(tmp_path):
     pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
     from nodes.dds_hand_detector import _parameters
 
-    def read(*texts, assignments=()):
+    def read(*texts, assignments=(), remark=pytest.fail):
         files = [tmp_path / f"{number}.yaml" for number in range(len(texts))]
         for path, text in zip(files, texts, strict=True):
             path.write_text(text)
-        return _parameters(files, list(assignments), NODE)
+        return _parameters(files, list(assignments), NODE, remark)
 
     return read
 
@@ -65,3 +65,18 @@ def test_ros_s_own_parameters_are_passed_over(given):
 def test_a_file_for_another_namespace_is_refused_with_the_remedy(given):
     with pytest.raises(ConfigError, match=f"needed is `{NODE}:` or `/\\*\\*/hand_detector:`"):
         given("hand_detector:\n  ros__parameters: {}\n")
+
+
+def test_files_of_an_earlier_version_count_without_what_is_retired(given):
+    first = "/**:\n  ros__parameters:\n    appearance_weight: 0.5\n    newcomer_density: 2e-3\n"
+    second = "/**:\n  ros__parameters:\n    appearance_weight: nonsense\n"
+    remarks = []
+    assert given(first, second, remark=remarks.append) == (Config(newcomer_density=0.002), False)
+    [remark] = remarks
+    for words in ("0.yaml, ", "1.yaml: ", "`appearance_weight` (the colors", "deleted"):
+        assert words in remark
+
+
+def test_what_is_retired_and_assigned_on_the_command_line_is_refused_with_the_remedy(given):
+    with pytest.raises(ConfigError, match=r"-p: .*`measurement_model` is no longer there.*Delete"):
+        given(assignments=["measurement_model:=polar"])

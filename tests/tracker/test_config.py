@@ -65,12 +65,47 @@ def test_the_example_of_section_12_loads_unchanged(section_12):
     )
 
 
+OLD_FILE = """
+hand_detector:
+  ros__parameters:
+    camera_fx: 500.0
+    appearance_weight: {weight}
+    measurement_model: {model}
+"""
+
+
+@pytest.mark.parametrize(
+    ("weight", "model"), [("0.5", "polar"), ("nonsense", "[1, 2]"), ("null", "{of: {what: 1}}")]
+)
+def test_a_file_of_an_earlier_version_counts_without_what_is_retired(write, weight, model):
+    path = write(OLD_FILE.format(weight=weight, model=model))
+    remarks = []
+    assert Config.from_yaml(path, remark=remarks.append) == Config(camera_fx=500.0)
+    [remark] = remarks
+    assert remark.startswith(f"{path}: parameters of an earlier version are left out")
+    for words in ("`appearance_weight` (the colors", "`measurement_model` (bearing", "deleted"):
+        assert words in remark
+
+
+def test_a_file_of_an_earlier_version_warns_a_program_at_its_own_line(write):
+    with pytest.warns(UserWarning, match="`appearance_weight`") as warned:
+        Config.from_yaml(write(OLD_FILE.format(weight=0.0, model="polar")))
+    assert [item.filename for item in warned] == [__file__]
+
+
+def test_other_mistakes_of_a_file_of_an_earlier_version_are_reported(write):
+    text = OLD_FILE.format(weight=0.0, model="polar").replace("500.0", "-1.0")
+    with pytest.raises(ConfigError, match="`camera_fx` is -1"):
+        Config.from_yaml(write(text), remark=str)
+
+
+@pytest.mark.parametrize("make", [Config.from_mapping, lambda values: Config(**values)])
 @pytest.mark.parametrize(
     ("name", "value"), [("appearance_weight", 0.0), ("measurement_model", "polar")]
 )
-def test_a_parameter_of_an_earlier_version_is_to_be_deleted(name, value):
-    with pytest.raises(ConfigError, match=f"`{name}` is no longer there: .* Delete it"):
-        Config.from_mapping({name: value})
+def test_a_program_that_names_a_retired_parameter_is_told_to_delete_it(make, name, value):
+    with pytest.raises(ValueError, match=f"`{name}` is no longer there: .* Delete it"):
+        make({name: value})
 
 
 def test_an_unknown_parameter_is_named_with_its_neighbor():
@@ -110,7 +145,7 @@ def test_every_mistake_of_a_file_is_reported_at_once(write):
     text = "hand_detector:\n  ros__parameters:\n    camera_fx: -1.0\n    1: 2\n    speed: 3\n"
     with pytest.raises(ConfigError) as caught:
         Config.from_yaml(write(text))
-    for words in ("`camera_fx` is -1.0", "unknown parameter `1`", "unknown parameter `speed`"):
+    for words in ("`camera_fx` is -1", "unknown parameter `1`", "unknown parameter `speed`"):
         assert words in str(caught.value)
 
 

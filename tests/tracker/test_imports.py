@@ -15,7 +15,7 @@ SOURCES = sorted((ROOT / "tracker").rglob("*.py"))
 FLOORS = [
     {"errors", "closing", "notes", "clock_offset", "user_cache", "wording"},
     {"outputs", "yaml_reading", "program"},
-    {"parameter_file"},
+    {"parameter_file", "retired_parameters"},
     {"containers", "config"},
     {"geometry", "config_file", "lens"},
     {"camera", "transforms"},

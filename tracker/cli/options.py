@@ -47,7 +47,9 @@ def parameters_from(
     Raises:
         ConfigError: The file or an assignment is off.
     """
-    chosen = Config.from_yaml(config) if config is not None else default or Config()
+    chosen = default or Config()
+    if config is not None:
+        chosen = Config.from_yaml(config, remark=note)
     changes = dict(read_assignment(text) for text in assignments or [])
     return chosen.replace(**changes) if changes else chosen
 
@@ -97,3 +99,8 @@ def complain(text: object) -> None:
     """One line on standard error."""
     words = f"raised-hand: {one_line(str(text))}"
     errors.print(words, highlight=False, markup=False, soft_wrap=True)
+
+
+def note(text: str) -> None:
+    """One line on standard error about what is no failure."""
+    errors.print(f"note: {one_line(text)}", highlight=False, markup=False, soft_wrap=True)

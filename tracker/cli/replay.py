@@ -20,6 +20,7 @@ from tracker.cli.options import (
     complain,
     console,
     errors,
+    note,
     parameter_files,
     parameters_from,
     print_files,
@@ -28,7 +29,7 @@ from tracker.cli.options import (
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
 from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed
-from tracker.wording import counted, one_line
+from tracker.wording import counted
 
 
 def replay_command(
@@ -134,7 +135,7 @@ def replay_command(
         console.print(table if table.row_count else f"Nobody raised a hand in {images}.")
         print_files(files)
     for remark in result.remarks:
-        errors.print(f"note: {one_line(remark)}", highlight=False, markup=False, soft_wrap=True)
+        note(remark)
     for problem in result.problems:
         complain(problem)
     has_trouble = viewer is not None and viewer.trouble

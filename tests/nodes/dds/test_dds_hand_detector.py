@@ -298,6 +298,14 @@ def test_words_that_make_no_sense_are_refused(run, model_store, arguments, words
     assert "Traceback" not in node.log()
 
 
+def test_a_file_of_an_earlier_version_starts_with_one_warning(start_node, tmp_path):
+    file = tmp_path / "old.yaml"
+    file.write_text("/**:\n  ros__parameters: {appearance_weight: 5, measurement_model: polar}\n")
+    node = start_node("--params-file", file)
+    [line] = [line for line in node.log().splitlines() if "appearance_weight" in line]
+    assert line.startswith("[WARNING]")
+
+
 def test_help_teaches(run):
     node = run("-m", "nodes.dds_hand_detector", "--help", name="node")
     assert node.wait(60.0) == 0

@@ -131,6 +131,23 @@ def test_a_node_with_bad_parameters_does_not_start(run, ear, name, value, reason
     assert reason in node.log()
 
 
+@pytest.mark.parametrize("module", ["nodes.hand_detector", "nodes.lifecycle_hand_detector"])
+def test_a_file_of_an_earlier_version_starts_with_one_warning(run, ear, tmp_path, module):
+    from rcl_interfaces.srv import ListParameters
+
+    file = tmp_path / "old.yaml"
+    file.write_text(
+        "/**:\n  ros__parameters: {camera_fx: 5.0, appearance_weight: 5, measurement_model: no}\n"
+    )
+    node = run("-m", module, "--ros-args", "--params-file", file, name="node")
+    answer = ear.call(ListParameters, "hand_detector/list_parameters", ListParameters.Request())
+    assert "camera_fx" in answer.result.names
+    assert not {"appearance_weight", "measurement_model"} & set(answer.result.names)
+    [line] = [line for line in node.log().splitlines() if "appearance_weight" in line]
+    assert line.startswith("[WARN]")
+    assert "`measurement_model` (bearing" in line
+
+
 def test_transforms_later_than_scans_and_images_cost_no_pose(ear, start_node, play, replayed):
     expected = replayed()
     play_undisturbed(ear, start_node, play, "-p", "transform_wait_s:=2.0", late_tf_s=0.15)

@@ -112,12 +112,29 @@ def test_a_wrong_parameter_file_is_one_line_and_status_2(run, tmp_path, model_st
         ("lower_streak:=" + "[" * 5000, "nest"),
         ("lower_streak:=" + "9" * 5000, "allowed is a whole number"),
         ("amcl:lower_streak:=3", "for the node /amcl"),
+        ("measurement_model:=polar", "`measurement_model` is no longer there: bearing and range"),
     ],
 )
 def test_a_wrong_assignment_is_one_line_and_status_2(run, assignment, named):
     status, _, error = run("monte-carlo", "outliers", "-n", 1, "-p", assignment)
     assert status == 2
     assert named in complaint(error)
+
+
+@pytest.mark.model
+def test_a_parameter_file_of_an_earlier_version_costs_one_line(run, tmp_path, model_store):
+    old = "/**:\n  ros__parameters: {appearance_weight: 0.5, measurement_model: polar}\n"
+    (tmp_path / "old.yaml").write_text(old)
+    (tmp_path / "photos").mkdir()
+    cv2.imwrite(str(tmp_path / "photos" / "gray.png"), np.full((120, 160, 3), 128, np.uint8))
+    _, usual_output, usual_error = run("replay", "photos")
+    status, output, error = run("replay", "photos", "--config", "old.yaml")
+    assert (status, output) == (0, usual_output)
+    [line] = set(error.splitlines()) - set(usual_error.splitlines())
+    assert error.count(line) == 1
+    assert line.startswith("note: old.yaml: ")
+    assert "`appearance_weight` (the colors" in line
+    assert "`measurement_model` (bearing" in line
 
 
 @pytest.mark.model
