@@ -5,6 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
 
 from tracker.containers import (
     CameraImage,
@@ -305,3 +308,39 @@ def test_joined_batches_keep_the_order_of_their_rows():
     assert joined.identity.tolist() == [9, 9, -1]
     with pytest.raises(ValueError, match="read-only"):
         joined.values[0] = 0.0
+
+
+ORDINARY_OR_NOT = st.one_of(
+    st.floats(1e-3, 5.0),
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.sampled_from([0.0, -0.0, 1e-6, 1e-5, 6.0, 2 * np.pi, 1e9**0.5, 1e9]),
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    columns=hnp.arrays(float, (4, 3), elements=ORDINARY_OR_NOT),
+    pose=hnp.arrays(float, (3, 3), elements=ORDINARY_OR_NOT),
+)
+def test_bearings_and_ranges_that_are_taken_pass_every_check_of_the_class(columns, pose):
+    taken = Measurements.polar(*columns, pose, refuse="drop")
+    assert len(replace(taken)) == len(taken)
+
+
+@pytest.mark.parametrize(
+    ("range_m", "bearing_std_rad", "range_std_m"),
+    [(0.0, 0.02, 0.1), (2.0, 6.2, 0.1), (2.0, 0.02, 100.0), (2.0, 2e-6, 2e-6), (9e8, 0.02, 3e4)],
+    ids=["touching", "nearly no bearing", "nearly no range", "laser tracker", "out of sight"],
+)
+def test_unusual_bearings_and_ranges_are_taken_as_they_are(range_m, bearing_std_rad, range_std_m):
+    claim = Measurements.polar(0.1, range_m, bearing_std_rad, range_std_m)
+    assert claim.values.tolist() == [[0.1, range_m]]
+    assert claim.covariance[0].tolist() == np.diag([bearing_std_rad**2, range_std_m**2]).tolist()
+
+
+def test_without_a_range_its_noise_is_one_and_the_kind_says_so():
+    for range_m in (math.nan, [math.nan, math.nan]):
+        claims = Measurements.polar([0.1, -0.2], range_m, 0.02, [-1.0, math.nan])
+        assert claims.kind.tolist() == [SensorKind.BEARING] * 2
+        assert claims.covariance.tolist() == [np.diag([0.02**2, 1.0]).tolist()] * 2
+        assert np.isnan(claims.values[:, 1]).all()

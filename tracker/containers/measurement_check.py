@@ -24,6 +24,8 @@ ABSURD_M = 1e9
 VARIANCE_MIN, VARIANCE_MAX = 1e-12, 1e9
 #: A bearing whose standard deviation is a full turn says nothing.
 BEARING_VARIANCE_MAX = (2.0 * np.pi) ** 2
+#: Standard deviations, in meters or radians, well inside those limits.
+_ORDINARY_STD_MIN, _ORDINARY_STD_MAX = 1e-5, 6.0
 #: Asymmetry that rounding leaves, and what a correlation must stay below 1 by.
 _ROUNDING = 1e-9
 
@@ -66,6 +68,29 @@ def usable_rows(claims: Measurements) -> BoolArray:
     if _are_plain(claims):
         return np.ones(len(claims), dtype=bool)
     return np.asarray(~np.logical_or.reduce([fault.rows for fault in _faults(claims)]))
+
+
+def are_ordinary(known: FloatArray, std: FloatArray, sensor_pose: FloatArray) -> bool:
+    """Whether bearings and ranges are so plain that they need no closer look.
+
+    This asks for more than is needed, in a microsecond. A sum of squares bounds each of its
+    numbers, `argmin` finds NaN before any number, and NaN fails every comparison.
+
+    Args:
+        known: Shape (M, 2): bearing and range, 1 in the place of what is not measured.
+        std: Shape (M, 2): their standard deviations, 1 in the same places.
+        sensor_pose: Shape (M, 3), well known.
+    """
+    if len(known) == 0:
+        return True
+    range_m, noise = known[:, 1], std.ravel()
+    return bool(
+        np.vdot(known, known) < ABSURD_M**2
+        and np.vdot(sensor_pose, sensor_pose) < ABSURD_M**2
+        and range_m[range_m.argmin()] >= 0.0
+        and noise[noise.argmin()] > _ORDINARY_STD_MIN
+        and noise[noise.argmax()] < _ORDINARY_STD_MAX
+    )
 
 
 def _are_plain(claims: Measurements) -> bool:

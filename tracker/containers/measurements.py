@@ -24,7 +24,12 @@ from tracker.containers.arrays import (
     select,
     trusted,
 )
-from tracker.containers.measurement_check import Refuse, check_measurements, usable_rows
+from tracker.containers.measurement_check import (
+    Refuse,
+    are_ordinary,
+    check_measurements,
+    usable_rows,
+)
 from tracker.containers.sensor_kind import SensorKind
 from tracker.errors import MeasurementError, ShapeError
 
@@ -164,20 +169,23 @@ class Measurements:
         fill("range_m", values[:, 1], range_m)
         fill("bearing_std_rad", covariance[:, 0, 0], bearing_std_rad)
         fill("range_std_m", covariance[:, 1, 1], range_std_m)
-        with np.errstate(over="ignore"):  # the check refuses an infinite variance
-            covariance *= np.abs(covariance)  # and a negative one, so the sign stays
-        return _made(
-            refuse,
+        std, poses = covariance.reshape(count, 4)[:, ::3], _poses(sensor_pose, count)
+        kind, known = _kinds(values, std)
+        is_ordinary = sensor_pose_covariance is None and are_ordinary(known, std, poses)
+        _square(covariance, is_ordinary)
+        claims = trusted(
+            Measurements,
             values=sealed(values),
-            kind=_kinds(values, covariance),
+            kind=kind,
             covariance=sealed(covariance),
-            sensor_pose=_poses(sensor_pose, count),
+            sensor_pose=poses,
             raised=_column("raised", raised, count, FLAGS),
             person=_column("person", person, count, COUNTS),
             hand=_column("hand", hand, count, COUNTS),
             sensor_pose_covariance=_doubts(sensor_pose_covariance, count),
             identity=_column("identity", identity, count, COUNTS),
         )
+        return _usable(claims, refuse, is_ordinary)
 
     @staticmethod
     def bearings(
@@ -240,8 +248,8 @@ class Measurements:
         count = len(xy)
         spread = np.empty((count, 2, 2))
         fill("covariance", spread, covariance)
-        return _made(
-            refuse,
+        claims = trusted(
+            Measurements,
             values=frozen(xy),
             covariance=sealed(spread),
             kind=constant(SensorKind.POSITION, (count,), COUNTS),
@@ -252,6 +260,7 @@ class Measurements:
             sensor_pose_covariance=constant(0.0, (count, 3, 3)),
             identity=_column("identity", identity, count, COUNTS),
         )
+        return _usable(claims, refuse)
 
     @staticmethod
     def concatenate(*parts: Measurements) -> Measurements:
@@ -263,28 +272,44 @@ class Measurements:
         return trusted(Measurements, **joined)
 
 
-def _made(refuse: Refuse, **columns: Any) -> Measurements:
-    """Columns that fit as one batch, of which a tracker can use every row."""
-    claims = trusted(Measurements, **columns)
+def _usable(claims: Measurements, refuse: Refuse, is_ordinary: bool = False) -> Measurements:
+    """The rows that a tracker can use; all of them where nothing needs a closer look."""
+    if refuse not in ("raise", "drop"):
+        raise MeasurementError(f"`refuse` is {refuse!r}; needed is 'raise' or 'drop'.")
+    if is_ordinary:
+        return claims
     if refuse == "drop":
         usable = usable_rows(claims)
         return claims if usable.all() else claims[usable]
-    if refuse != "raise":
-        raise MeasurementError(f"`refuse` is {refuse!r}; needed is 'raise' or 'drop'.")
     check_measurements(claims)
     return claims
 
 
-def _kinds(values: FloatArray, covariance: FloatArray) -> IntArray:
-    """Kinds of bearings and ranges by what is NaN, in whose place the variance becomes 1."""
+def _kinds(values: FloatArray, std: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Kinds of bearings and ranges by what is NaN, and the numbers with 1 there, as in `std`."""
     count, missing = len(values), np.isnan(values)
-    if np.count_nonzero(missing) == 0:
-        return constant(SensorKind.BEARING_RANGE, (count,), COUNTS)
-    np.copyto(covariance.reshape(-1, 4)[:, ::3], 1.0, where=missing)
-    if np.count_nonzero(missing[:, 1]) == count:
-        return constant(SensorKind.BEARING, (count,), COUNTS)
-    no_bearing, no_range = missing.view(np.uint8).T
-    return sealed(_KIND_BY_MISSING[no_bearing, no_range])
+    pattern = missing.tobytes()  # quicker than to reduce an array of a few rows
+    if 1 not in pattern:
+        return constant(SensorKind.BEARING_RANGE, (count,), COUNTS), values
+    known = values.copy()
+    if pattern == b"\0\1" * count:
+        known[:, 1] = std[:, 1] = 1.0
+        return constant(SensorKind.BEARING, (count,), COUNTS), known
+    no_bearing, no_range = missing.T
+    no_bearing &= ~no_range  # a row that has neither keeps its NaN, and is refused
+    np.copyto(known, 1.0, where=missing)
+    np.copyto(std, 1.0, where=missing)
+    kind = _KIND_BY_MISSING[no_bearing.view(np.uint8), no_range.view(np.uint8)]
+    return sealed(kind), known
+
+
+def _square(std: FloatArray, is_ordinary: bool) -> None:
+    """Turn standard deviations into variances; the sign of bad ones stays, for the check."""
+    if is_ordinary:
+        std *= std
+    else:
+        with np.errstate(over="ignore"):  # an infinite variance is refused as well
+            std *= np.abs(std)
 
 
 def _poses(sensor_pose: ArrayLike, count: int) -> FloatArray:
