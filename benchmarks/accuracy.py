@@ -19,7 +19,8 @@ from rich.console import Console
 from rich.table import Table
 
 from tracker import PersonTracker
-from tracker.evaluation.trials.people_trial import TrialScores, draw_people_trial
+from tracker.evaluation.metrics.scores import TrialScores
+from tracker.evaluation.trials.people_trial import draw_people_trial
 from tracker.evaluation.trials.scenario import SCENARIOS, PeopleScenario, default_config
 
 FIGURES = ("gospa_m", "identity_switches_per_min", "missed_share", "false_tracks", "rmse_m")

@@ -25,7 +25,9 @@ _DISTRIBUTIONS = (
     ("gospa_m", "GOSPA (m)"),
     ("identity_switches_per_min", "identity switches a minute"),
     ("time_to_raise_s", "time to raise (s)"),
+    ("rmse_m", "RMSE of found people (m)"),
     ("nees_position", "NEES of the position (ideal 2)"),
+    ("covered_share", "inside the 95 % ellipse, share"),
 )
 
 
@@ -39,7 +41,7 @@ def draw_study(study: Study, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    figure = Figure(figsize=(10.0, 4.4), dpi=160, facecolor=PAPER, layout="constrained")
+    figure = Figure(figsize=(12.0, 4.4), dpi=160, facecolor=PAPER, layout="constrained")
     if isinstance(study, FilterStudy):
         error, nees = figure.subplots(1, 2)
         draw_filter(error, nees, study)
@@ -72,10 +74,10 @@ def draw_filter(error: Axes, nees: Axes, study: FilterStudy) -> None:
 
 
 def _draw_people(figure: Figure, study: PeopleStudy) -> None:
-    grid = figure.add_gridspec(2, 4)
+    grid = figure.add_gridspec(2, 5)
     draw_gospa_parts(figure.add_subplot(grid[:, :2]), study)
     for place, (name, title) in enumerate(_DISTRIBUTIONS):
-        axes = figure.add_subplot(grid[place // 2, 2 + place % 2])
+        axes = figure.add_subplot(grid[place // 3, 2 + place % 3])
         draw_distribution(axes, study.rows[name], title)
 
 

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from array import array
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from tracker.containers import FloatArray, FrameResult, Tracks, Truth
+from tracker.containers import FrameResult, IntArray, Tracks, Truth
 from tracker.evaluation.metrics.episode_report import EpisodeReport, EpisodeRow, InventedRow
+from tracker.evaluation.metrics.matching import distances, match_best
+from tracker.evaluation.metrics.raise_reports import Allowed, Compared, Episodes, judge_raises
 
 __all__ = ["EpisodeEvaluation", "EpisodeReport", "EpisodeRow", "InventedRow"]
 
@@ -46,24 +48,14 @@ class EpisodeEvaluation:
         start_ns: int | None = None,
     ) -> None:
         self._cutoff_m = cutoff_m
-        self._raise_streak = raise_streak
-        self._lower_streak = lower_streak
-        self._transition_ns = round(transition_s * 1e9)
+        self._allowed = Allowed(raise_streak, lower_streak, round(transition_s * 1e9))
         self._gap_ns = round(truth_gap_s * 1e9)
         self._start_ns = start_ns
         self._truth: deque[_Sample] = deque(maxlen=_TRUTH_BUFFERED)
         self._results: deque[FrameResult] = deque()
-        self._open: dict[int, _Episode] = {}
+        self._open: dict[int, int] = {}
         self._episodes: list[_Episode] = []
-        self._last_up_ns: dict[int, int] = {}
-        self._frames_down: dict[int, int] = {}
-        self._unfounded: dict[int, _Unfounded] = {}
-        self._invented: list[InventedRow] = []
-        self._identities: dict[int, list[int]] = {}
-        self._reported_as: dict[int, int] = {}
-        self._switches = 0
-        self._errors = _Errors()
-        self._frames = 0
+        self._rows = _Rows()
         self._frames_without_truth = 0
 
     def add_truth(self, truth: Truth) -> None:
@@ -71,21 +63,17 @@ class EpisodeEvaluation:
         if self._truth and truth.stamp_ns < self._truth[-1].truth.stamp_ns:
             self._finish_pending()  # the clock jumped back: what was belongs to nothing that comes
             self._truth.clear()
-            self._open.clear()
-            self._last_up_ns.clear()
-            self._frames_down.clear()
+            self._open = {}
         self._begin(truth.stamp_ns)
-        counted = truth.hand_up & truth.in_view
-        for row, person in enumerate(truth.id.tolist()):
-            if not counted[row]:
-                self._open.pop(person, None)
-                continue
-            if person not in self._open:
+        before, self._open = self._open, {}  # whoever has left has no hand up any more
+        for row in np.flatnonzero(truth.hand_up & truth.in_view).tolist():
+            person = int(truth.id[row])
+            self._open[person] = before.get(person, len(self._episodes))
+            if person not in before:
                 x, y = truth.xy_m[row].tolist()
-                self._open[person] = episode = _Episode(person, truth.stamp_ns, (x, y))
-                self._episodes.append(episode)
-            self._open[person].end_ns = truth.stamp_ns
-        self._truth.append(_Sample(truth, dict(self._open)))
+                self._episodes.append(_Episode(person, truth.stamp_ns, (x, y)))
+            self._episodes[self._open[person]].end_ns = truth.stamp_ns
+        self._truth.append(_Sample(truth, self._open))
         self._compare_ready()
 
     def add_result(self, result: FrameResult) -> None:
@@ -99,20 +87,16 @@ class EpisodeEvaluation:
     def report(self) -> EpisodeReport:
         """Everything until now; may be asked at any time, best at the end."""
         self._finish_pending()
-        rows = [episode.row() for episode in self._episodes]
-        told = [
-            row for row in rows if row.reported_ns is not None or row.frames >= self._raise_streak
-        ]
-        invented = [*self._invented, *(item.row() for item in self._unfounded.values())]
-        return EpisodeReport(
+        return judge_raises(
+            Episodes(
+                np.array([episode.person for episode in self._episodes], dtype=np.int64),
+                np.array([episode.start_ns for episode in self._episodes], dtype=np.int64),
+                np.array([episode.end_ns for episode in self._episodes], dtype=np.int64),
+                np.array([episode.xy_m for episode in self._episodes]).reshape(-1, 2),
+            ),
+            self._rows.compared(),
+            self._allowed,
             start_ns=self._start_ns or 0,
-            episodes=tuple(sorted(told, key=lambda row: (row.start_ns, row.person))),
-            invented=tuple(sorted(invented, key=lambda row: (row.start_ns, row.identity))),
-            too_short=len(rows) - len(told),
-            identities={key: tuple(ids) for key, ids in sorted(self._identities.items())},
-            identity_switches=self._switches,
-            position_error_m=self._errors.median(),
-            frames=self._frames,
             frames_without_truth=self._frames_without_truth,
         )
 
@@ -143,86 +127,8 @@ class EpisodeEvaluation:
         if not near or near[0][0] > self._gap_ns:
             self._frames_without_truth += 1
             return
-        self._frames += 1
-        self._compare(truth[near[0][1]], result.tracks[result.tracks.confirmed])
-
-    def _compare(self, sample: _Sample, tracks: Tracks) -> None:
-        truth, now_ns = sample.truth, tracks.stamp_ns
-        for episode in sample.open.values():
-            episode.frames += 1
-        for row, person in enumerate(truth.id.tolist()):
-            if truth.hand_up[row]:
-                self._last_up_ns[person], self._frames_down[person] = now_ns, 0
-            elif now_ns - self._last_up_ns.get(person, now_ns) > self._transition_ns:
-                self._frames_down[person] += 1
-        pairs = _pair(tracks.mean[:, :2], truth.xy_m, self._cutoff_m)
-        for row in np.flatnonzero(tracks.raised).tolist():
-            identity, at = int(tracks.id[row]), pairs.get(row)
-            person = None if at is None else int(truth.id[at])
-            if person is None or self._frames_down.get(person, self._lower_streak) >= (
-                self._lower_streak
-            ):
-                x, y = tracks.mean[row, :2].tolist()
-                first = _Unfounded(identity, now_ns, now_ns, (x, y), person)
-                self._unfounded.setdefault(identity, first).end_ns = now_ns
-                continue
-            early = self._unfounded.pop(identity, None)
-            if early is not None and now_ns - early.start_ns > self._transition_ns:
-                self._invented.append(early.row())
-            if truth.hand_up[at]:
-                error_m = float(np.linalg.norm(tracks.mean[row, :2] - truth.xy_m[at]))
-                self._credit(person, identity, error_m, now_ns, sample.open.get(person))
-        raised = set(tracks.id[tracks.raised].tolist())
-        for identity in [key for key in self._unfounded if key not in raised]:
-            self._invented.append(self._unfounded.pop(identity).row())
-
-    def _credit(
-        self, person: int, identity: int, error_m: float, now_ns: int, episode: _Episode | None
-    ) -> None:
-        self._errors.add(error_m)
-        identities = self._identities.setdefault(person, [])
-        if identity not in identities:
-            identities.append(identity)
-        self._switches += int(self._reported_as.get(person, identity) != identity)
-        self._reported_as[person] = identity
-        if episode is not None:
-            episode.errors.add(error_m)
-            if identity not in episode.identities:
-                episode.identities.append(identity)
-            if episode.reported_ns is None:
-                episode.reported_ns = max(now_ns, episode.start_ns)
-                episode.reported_frames = episode.frames
-
-
-def _pair(tracks_xy: FloatArray, people_xy: FloatArray, cutoff_m: float) -> dict[int, int]:
-    """Rows of tracks to rows of people: least sum of distances, each below the cutoff."""
-    from scipy.optimize import linear_sum_assignment
-
-    distance = np.linalg.norm(tracks_xy[:, None] - people_xy[None], axis=-1)
-    # Capped: leaving both alone costs the cutoff, so that no far pair is forced on anybody.
-    rows, columns = linear_sum_assignment(np.minimum(distance, cutoff_m))
-    near = distance[rows, columns] < cutoff_m
-    return dict(zip(rows[near].tolist(), columns[near].tolist(), strict=True))
-
-
-class _Errors:
-    """Distances whose median is wanted; every second one leaves when there are too many."""
-
-    def __init__(self) -> None:
-        self._values = array("d")
-        self._stride = 1
-        self._count = 0
-
-    def add(self, value: float) -> None:
-        if self._count % self._stride == 0:
-            self._values.append(value)
-        self._count += 1
-        if len(self._values) > 4096:
-            self._values = self._values[::2]
-            self._stride *= 2
-
-    def median(self) -> float | None:
-        return float(np.median(self._values)) if self._values else None
+        tracks = result.tracks[result.tracks.confirmed]
+        self._rows.add(truth[near[0][1]], tracks, self._cutoff_m)
 
 
 @dataclass(slots=True, eq=False)
@@ -231,36 +137,57 @@ class _Episode:
     start_ns: int
     xy_m: tuple[float, float]
     end_ns: int = 0
-    frames: int = 0
-    reported_ns: int | None = None
-    reported_frames: int | None = None
-    identities: list[int] = field(default_factory=list)
-    errors: _Errors = field(default_factory=_Errors)
-
-    def row(self) -> EpisodeRow:
-        return EpisodeRow(
-            self.person, self.start_ns, self.end_ns, self.xy_m, self.frames,
-            self.reported_ns, self.reported_frames, self.errors.median(), tuple(self.identities),
-        )  # fmt: skip
-
-
-@dataclass(slots=True, eq=False)
-class _Unfounded:
-    """A track that is raised while no raised hand stands behind it."""
-
-    identity: int
-    start_ns: int
-    end_ns: int
-    xy_m: tuple[float, float]
-    person: int | None
-
-    def row(self) -> InventedRow:
-        return InventedRow(self.identity, self.start_ns, self.end_ns, self.xy_m, self.person)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sample:
-    """Truth at one instant, and the episodes that last there, by person."""
+    """Truth at one instant, and the rows of the episodes that last there, by person."""
 
     truth: Truth
-    open: dict[int, _Episode]
+    open: dict[int, int]
+
+
+class _Rows:
+    """`Compared`, as it grows."""
+
+    def __init__(self) -> None:
+        self._stamps_ns = array("q")
+        self._people = array("q")  # image, number, is the hand up, episode
+        self._tracks = array("q")  # image, identity, row of the person
+        self._places = array("d")  # x, y, how far from the person
+
+    def add(self, sample: _Sample, tracks: Tracks, cutoff_m: float) -> None:
+        """Compare one image with the truth; no pair is farther apart than the cutoff."""
+        frame, truth, first = len(self._stamps_ns), sample.truth, len(self._people) // 4
+        self._stamps_ns.append(tracks.stamp_ns)
+        for person, is_up in zip(truth.id.tolist(), truth.hand_up.tolist(), strict=True):
+            self._people.extend((frame, person, is_up, sample.open.get(person, -1)))
+        apart = distances(tracks.mean[None, :, :2], truth.xy_m[None])
+        (pairs,) = match_best(cutoff_m - apart)
+        for row in np.flatnonzero(tracks.raised).tolist():
+            at = int(pairs[row].argmax()) if pairs[row].any() else -1
+            self._tracks.extend((frame, int(tracks.id[row]), first + at if at >= 0 else -1))
+            error_m = float(apart[0, row, at]) if at >= 0 else np.inf
+            self._places.extend((*tracks.mean[row, :2].tolist(), error_m))
+
+    def compared(self) -> Compared:
+        """The rows until now."""
+        frame, person, is_up, episode = _table(self._people, 4).T
+        track_frame, track, paired = _table(self._tracks, 3).T
+        places = np.array(self._places).reshape(-1, 3)
+        return Compared(
+            stamps_ns=np.array(self._stamps_ns, dtype=np.int64),
+            frame=frame,
+            person=person,
+            hand_up=is_up.astype(bool),
+            episode=episode,
+            track_frame=track_frame,
+            track=track,
+            paired=paired,
+            xy_m=places[:, :2],
+            error_m=places[:, 2],
+        )
+
+
+def _table(numbers: array[int], columns: int) -> IntArray:
+    return np.array(numbers, dtype=np.int64).reshape(-1, columns)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
-from tracker.containers import FloatArray, IntArray
+from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.evaluation.metrics.matching import distances, match_best
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,25 @@ class Gospa:
     pairs: IntArray
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class GospaFrames:
+    """The same of T instants.
+
+    Attributes:
+        distance_m: Shape (T,).
+        localisation: Shape (T,).
+        missed: Shape (T,).
+        false: Shape (T,).
+        pairs: Shape (T, N, P): which track is paired with which person.
+    """
+
+    distance_m: FloatArray
+    localisation: FloatArray
+    missed: FloatArray
+    false: FloatArray
+    pairs: BoolArray
+
+
 def gospa(
     tracks_xy_m: FloatArray, people_xy_m: FloatArray, cutoff_m: float = 1.0, order: float = 2.0
 ) -> Gospa:
@@ -45,15 +64,33 @@ def gospa(
     Source: Rahmathullah, Garcia-Fernandez, Svensson, "Generalized optimal sub-pattern assignment
         metric", FUSION 2017.
     """
-    distance = np.linalg.norm(tracks_xy_m[:, None] - people_xy_m[None], axis=-1)
-    cost = np.minimum(distance, cutoff_m) ** order
-    rows, columns = linear_sum_assignment(cost)
-    near = distance[rows, columns] < cutoff_m
-    pairs = np.stack([rows[near], columns[near]], axis=-1)
-    alone = cutoff_m**order / 2.0
-    localisation = float(cost[pairs[:, 0], pairs[:, 1]].sum())
-    missed = alone * (len(people_xy_m) - len(pairs))
-    false = alone * (len(tracks_xy_m) - len(pairs))
+    one = gospa_frames(tracks_xy_m[None], people_xy_m[None], cutoff_m, order)
     return Gospa(
-        (localisation + missed + false) ** (1.0 / order), localisation, missed, false, pairs
+        float(one.distance_m[0]),
+        float(one.localisation[0]),
+        float(one.missed[0]),
+        float(one.false[0]),
+        np.argwhere(one.pairs[0]),
     )
+
+
+def gospa_frames(
+    tracks_xy_m: FloatArray, people_xy_m: FloatArray, cutoff_m: float = 1.0, order: float = 2.0
+) -> GospaFrames:
+    """`gospa` of many instants at once.
+
+    Args:
+        tracks_xy_m: Shape (T, N, 2); NaN where there is nobody.
+        people_xy_m: Shape (T, P, 2), in the same frame; NaN where there is nobody.
+        cutoff_m: c.
+        order: p.
+    """
+    alone = cutoff_m**order / 2.0
+    cost = np.minimum(distances(tracks_xy_m, people_xy_m), cutoff_m) ** order
+    pairs = match_best(2.0 * alone - cost)
+    paired = np.count_nonzero(pairs, axis=(1, 2))
+    localisation = np.where(pairs, cost, 0.0).sum(axis=(1, 2))
+    missed = alone * (np.isfinite(people_xy_m[..., 0]).sum(axis=1) - paired)
+    false = alone * (np.isfinite(tracks_xy_m[..., 0]).sum(axis=1) - paired)
+    distance = (localisation + missed + false) ** (1.0 / order)
+    return GospaFrames(distance, localisation, missed, false, pairs)

@@ -173,7 +173,7 @@ class PeopleStudy:
         scenario: What happened.
         config: The tracker's parameters.
         seed: Of the study.
-        rows: Figures of each trial, shape (B,), by the names of `people_trial.TrialScores.row`.
+        rows: Figures of each trial, shape (B,), by the names of `metrics.scores.score_trial`.
     """
 
     name: str
@@ -204,6 +204,7 @@ class PeopleStudy:
             _mean("track purity", rows["track_purity"]),
             _mean("RMSE of found people (m)", rows["rmse_m"]),
             _mean("NEES of the position (ideal 2)", rows["nees_position"]),
+            _mean("people inside the 95 % ellipse, share", rows["covered_share"]),
             _mean("time to raise (s)", rows["time_to_raise_s"]),
             Figure("raised hands", hands),
             _share("missed raises, share", rows["missed_raises"].sum(), hands),

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, IntArray, Truth
+from tracker.containers import BoolArray, FloatArray
+from tracker.evaluation.metrics.frames import TruthFrames
 from tracker.evaluation.trials.paths import recorded, walks
 from tracker.evaluation.trials.scenario import PeopleScenario
 from tracker.geometry import normalize_angle
@@ -17,35 +18,18 @@ class PeopleScene:
     """Truth of one trial, frame by frame.
 
     Attributes:
-        stamps_ns: Shape (T,).
-        xy_m: Shape (T, P, 2), in the fixed frame; NaN while somebody is not there.
-        shown_xy_m: The same, as old as the latency makes what the sensors show.
-        hand_up: Shape (T, P).
+        truth: Who is where, whose hand is up, who stands in the camera's field of view.
+        shown_xy_m: Shape (T, P, 2): where, as old as the latency makes what the sensors show.
         hand_side: Shape (P,): -1 or 1, on which side of the body the hand is.
         robot_yaw_rad: Shape (T,), of the robot at the origin ...
         shown_yaw_rad: ... and when the sensors looked.
-        in_view: Shape (T, P): the person stands in the camera's field of view.
     """
 
-    stamps_ns: IntArray
-    xy_m: FloatArray
+    truth: TruthFrames
     shown_xy_m: FloatArray
-    hand_up: BoolArray
     hand_side: FloatArray
     robot_yaw_rad: FloatArray
     shown_yaw_rad: FloatArray
-    in_view: BoolArray
-
-    def truth(self, frame: int) -> Truth:
-        """Everybody who is there at one frame; a person's number is their column."""
-        there = np.flatnonzero(np.isfinite(self.xy_m[frame, :, 0]))
-        return Truth(
-            stamp_ns=int(self.stamps_ns[frame]),
-            id=there,
-            xy_m=self.xy_m[frame, there],
-            hand_up=self.hand_up[frame, there],
-            in_view=self.in_view[frame, there],
-        )
 
 
 def draw_scene(scenario: PeopleScenario, rng: np.random.Generator) -> PeopleScene:
@@ -75,16 +59,15 @@ def draw_scene(scenario: PeopleScenario, rng: np.random.Generator) -> PeopleScen
         for at_s in (stamps_s, stamps_s - scenario.latency_s)
     )
     bearing = normalize_angle(np.arctan2(xy[..., 1], xy[..., 0]) - yaw[:, None])
-    return PeopleScene(
+    truth = TruthFrames(
         stamps_ns=np.round(stamps_s * 1e9).astype(np.int64),
+        id=np.arange(people),
         xy_m=xy,
-        shown_xy_m=shown_xy,
         hand_up=_hands(scenario, rng, stamps_s, people),
-        hand_side=rng.choice([-1.0, 1.0], people),
-        robot_yaw_rad=yaw,
-        shown_yaw_rad=shown_yaw,
         in_view=np.abs(bearing) <= np.deg2rad(scenario.field_of_view_deg / 2),
     )
+    hand_side = rng.choice([-1.0, 1.0], people)
+    return PeopleScene(truth, shown_xy, hand_side, yaw, shown_yaw)
 
 
 def _hands(

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, Measurements
+from tracker.containers import BoolArray, FloatArray, IntArray, Measurements
 from tracker.evaluation.trials.people_scene import PeopleScene
 from tracker.evaluation.trials.scenario import PeopleScenario
 from tracker.geometry import normalize_angle
@@ -32,79 +33,144 @@ class Sensed:
     scan_view: View | None
 
 
-def sense(
-    scenario: PeopleScenario, scene: PeopleScene, rng: np.random.Generator
-) -> Iterator[Sensed]:
-    """Measure a scene, frame by frame.
+@dataclass(frozen=True, slots=True, eq=False)
+class SensedFrames:
+    """What the tracker gets of T frames.
+
+    Attributes:
+        measurements: One frame's behind the other's, in the order of `Sensed`.
+        begins: Shape (T + 1,): row of each frame's first measurement, and how many there are.
+        poses: Shape (T, 3): x_m, y_m, yaw_rad where the robot believes to be.
+        field_of_view_rad: Of its camera.
+        has_scan: It has a laser, which looks everywhere.
+    """
+
+    measurements: Measurements
+    begins: IntArray
+    poses: FloatArray
+    field_of_view_rad: float
+    has_scan: bool
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+    def __iter__(self) -> Iterator[Sensed]:
+        for frame, pose in enumerate(self.poses):
+            yield Sensed(
+                self.measurements[self.begins[frame] : self.begins[frame + 1]],
+                View(pose, self.field_of_view_rad),
+                View(pose, 2 * np.pi) if self.has_scan else None,
+            )
+
+
+def sense(scenario: PeopleScenario, scene: PeopleScene, rng: np.random.Generator) -> SensedFrames:
+    """Measure a scene.
 
     Args:
         scenario: Noise and faults.
         scene: What is there to be seen.
         rng: All randomness; drawn in the same order whatever the frames show.
-
-    Yields:
-        Each frame in turn.
     """
     xy = scene.shown_xy_m
     range_m = np.linalg.norm(xy, axis=-1)
     bearing = np.arctan2(xy[..., 1], xy[..., 0]) - scene.shown_yaw_rad[:, None]
     there = np.isfinite(range_m) & (range_m > 0.3)
     seen = there & ~_hidden(range_m, bearing, scenario.body_width_m, rng)
-
-    hand_seen = seen & scene.hand_up & scene.in_view
-    hand_seen &= rng.random(hand_seen.shape) < scenario.detection_probability
-    beside = np.arctan2(scenario.hand_offset_m * scene.hand_side, np.where(there, range_m, 1.0))
-    noise_rad = np.deg2rad(scenario.bearing_std_deg)
-    hand_bearing = bearing + beside + noise_rad * rng.standard_normal(bearing.shape)
-    hand_range = range_m + scenario.range_std_m * rng.standard_normal(range_m.shape)
-    off = rng.random(range_m.shape) < scenario.outlier_share
-    hand_range += np.where(off, scenario.outlier_m * rng.random(range_m.shape), 0.0)
-    hand_range[rng.random(range_m.shape) < scenario.range_missing_share] = np.nan
-    hand_std = np.hypot(noise_rad, np.arctan2(scenario.hand_offset_m, range_m))
-
-    cluster_seen = seen & (rng.random(seen.shape) < scenario.scan_detection_probability)
-    cluster_bearing = bearing + _CLUSTER_BEARING_STD_RAD * rng.standard_normal(bearing.shape)
-    cluster_range = range_m + scenario.range_std_m * rng.standard_normal(range_m.shape)
-
-    poses = np.zeros((len(xy), 3))
-    poses[:, :2] = scenario.pose_std_m * rng.standard_normal((len(xy), 2))
-    poses[:, 2] = np.deg2rad(scenario.pose_std_deg) * rng.standard_normal(len(xy))
-    poses[:, 2] += scene.robot_yaw_rad
+    hands = _hands(scenario, scene, seen, bearing, range_m, rng)
+    clusters = _clusters(scenario, seen, bearing, range_m, rng)
+    poses = _poses(scenario, scene.robot_yaw_rad, rng)
+    measured = _joined(hands, clusters, *_clutter(scenario, scene.shown_yaw_rad, rng))
+    measurements = Measurements.polar(
+        normalize_angle(measured.bearing_rad),
+        np.maximum(measured.range_m, 0.05),
+        measured.bearing_std_rad,
+        scenario.range_std_m,
+        poses[measured.frame],
+        raised=measured.raised,
+    )
     pose_std = [scenario.pose_std_m, scenario.pose_std_m, np.deg2rad(scenario.pose_std_deg)]
-    pose_covariance = np.diag(np.square(pose_std))
-    view_rad = float(np.deg2rad(scenario.field_of_view_deg))
-    for frame, pose in enumerate(poses):
-        hands, clusters = hand_seen[frame], cluster_seen[frame]
-        false_hands = _clutter(scenario, rng, scenario.clutter_per_frame)
-        false_clusters = _clutter(scenario, rng, scenario.scan_clutter_per_frame)
-        false_hands[:, 0] -= scene.shown_yaw_rad[frame]
-        false_clusters[:, 0] -= scene.shown_yaw_rad[frame]
-        in_view = np.abs(normalize_angle(false_hands[:, 0])) <= view_rad / 2
-        false_hands = false_hands[in_view]
-        false_std = np.hypot(noise_rad, np.arctan2(scenario.hand_offset_m, false_hands[:, 1]))
-        measured = Measurements.concatenate(
-            Measurements.polar(
-                normalize_angle(np.append(hand_bearing[frame, hands], false_hands[:, 0])),
-                np.maximum(np.append(hand_range[frame, hands], false_hands[:, 1]), 0.05),
-                np.append(hand_std[frame, hands], false_std),
-                scenario.range_std_m,
-                pose,
-            ),
-            Measurements.polar(
-                normalize_angle(np.append(cluster_bearing[frame, clusters], false_clusters[:, 0])),
-                np.maximum(np.append(cluster_range[frame, clusters], false_clusters[:, 1]), 0.05),
-                _CLUSTER_BEARING_STD_RAD,
-                scenario.range_std_m,
-                pose,
-                raised=False,
-            ),
-        )
-        known = np.broadcast_to(pose_covariance, (len(measured), 3, 3))
-        yield Sensed(
-            replace(measured, sensor_pose_covariance=known),
-            View(pose, view_rad),
-            View(pose, 2 * np.pi) if scenario.scan_detection_probability else None,
-        )
+    doubt = np.broadcast_to(np.diag(np.square(pose_std)), (len(measurements), 3, 3))
+    return SensedFrames(
+        replace(measurements, sensor_pose_covariance=doubt),
+        np.searchsorted(measured.frame, np.arange(len(poses) + 1)),
+        poses,
+        float(np.deg2rad(scenario.field_of_view_deg)),
+        has_scan=scenario.scan_detection_probability > 0.0,
+    )
+
+
+class _Rows(NamedTuple):
+    """What was measured of one kind, shape (C,) each, frames ascending."""
+
+    frame: IntArray
+    bearing_rad: FloatArray
+    range_m: FloatArray
+    bearing_std_rad: FloatArray
+    raised: BoolArray
+
+
+def _joined(hands: _Rows, clusters: _Rows, false_hands: _Rows, false_clusters: _Rows) -> _Rows:
+    """All of them, frame by frame in the order of `Sensed`."""
+    kinds = hands, false_hands, clusters, false_clusters
+    order = np.argsort(np.concatenate([rows.frame for rows in kinds]), kind="stable")
+    return _Rows(*(np.concatenate(column)[order] for column in zip(*kinds, strict=True)))
+
+
+def _hands(
+    scenario: PeopleScenario,
+    scene: PeopleScene,
+    seen: BoolArray,
+    bearing_rad: FloatArray,
+    range_m: FloatArray,
+    rng: np.random.Generator,
+) -> _Rows:
+    """Raised hands of people whom nobody hides; arrays of shape (T, P)."""
+    seen = seen & scene.truth.hand_up & scene.truth.in_view
+    seen &= rng.random(seen.shape) < scenario.detection_probability
+    beside = np.arctan2(scenario.hand_offset_m * scene.hand_side, np.where(seen, range_m, 1.0))
+    noise_rad = np.deg2rad(scenario.bearing_std_deg)
+    bearing_rad = bearing_rad + beside + noise_rad * rng.standard_normal(seen.shape)
+    measured_m = range_m + scenario.range_std_m * rng.standard_normal(seen.shape)
+    off = rng.random(seen.shape) < scenario.outlier_share
+    measured_m += np.where(off, scenario.outlier_m * rng.random(seen.shape), 0.0)
+    measured_m[rng.random(seen.shape) < scenario.range_missing_share] = np.nan
+    return _Rows(
+        np.nonzero(seen)[0],
+        bearing_rad[seen],
+        measured_m[seen],
+        _hand_std_rad(scenario, range_m[seen]),
+        np.ones(np.count_nonzero(seen), dtype=bool),
+    )
+
+
+def _hand_std_rad(scenario: PeopleScenario, range_m: FloatArray) -> FloatArray:
+    beside = np.arctan2(scenario.hand_offset_m, range_m)
+    return np.asarray(np.hypot(np.deg2rad(scenario.bearing_std_deg), beside))
+
+
+def _clusters(
+    scenario: PeopleScenario,
+    seen: BoolArray,
+    bearing_rad: FloatArray,
+    range_m: FloatArray,
+    rng: np.random.Generator,
+) -> _Rows:
+    """People in the scan; arrays of shape (T, P)."""
+    seen = seen & (rng.random(seen.shape) < scenario.scan_detection_probability)
+    bearing_rad = bearing_rad + _CLUSTER_BEARING_STD_RAD * rng.standard_normal(seen.shape)
+    measured_m = range_m + scenario.range_std_m * rng.standard_normal(seen.shape)
+    count = np.count_nonzero(seen)
+    std_rad, raised = np.full(count, _CLUSTER_BEARING_STD_RAD), np.zeros(count, dtype=bool)
+    return _Rows(np.nonzero(seen)[0], bearing_rad[seen], measured_m[seen], std_rad, raised)
+
+
+def _poses(scenario: PeopleScenario, yaw_rad: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Shape (T, 3): where the robot believes to be; it stands at the origin."""
+    poses = np.empty((len(yaw_rad), 3))
+    poses[:, :2] = scenario.pose_std_m * rng.standard_normal((len(yaw_rad), 2))
+    poses[:, 2] = np.deg2rad(scenario.pose_std_deg) * rng.standard_normal(len(yaw_rad))
+    poses[:, 2] += yaw_rad
+    return poses
 
 
 def _hidden(
@@ -119,8 +185,38 @@ def _hidden(
     return covered & (rng.random(covered.shape) < _HIDDEN_SHARE) & (width_m > 0.0)
 
 
-def _clutter(scenario: PeopleScenario, rng: np.random.Generator, mean: float) -> FloatArray:
-    """Bearing and range of what is nobody, evenly over the area; shape (C, 2)."""
-    x_from, x_to, y_from, y_to = scenario.area_m
-    xy = rng.uniform((x_from, y_from), (x_to, y_to), (rng.poisson(mean), 2))
-    return np.stack([np.arctan2(xy[:, 1], xy[:, 0]), np.linalg.norm(xy, axis=-1)], axis=-1)
+def _clutter(
+    scenario: PeopleScenario, yaw_rad: FloatArray, rng: np.random.Generator
+) -> tuple[_Rows, _Rows]:
+    """Hands in view and clusters that are nobody, evenly over the area.
+
+    Drawn frame after frame: how many numbers one frame takes decides what the next one gets.
+    """
+    means = scenario.clutter_per_frame, scenario.scan_clutter_per_frame
+    counts = np.zeros((2, len(yaw_rad)), dtype=np.int64)
+    drawn: tuple[list[FloatArray], list[FloatArray]] = ([], [])
+    for frame in range(len(yaw_rad)):
+        for kind, mean in enumerate(means):
+            count = rng.poisson(mean)
+            if count:
+                counts[kind, frame] = count
+                drawn[kind].append(rng.random((count, 2)))
+    frames, bearing_rad, range_m = _places(scenario, counts[0], drawn[0], yaw_rad)
+    in_view = np.abs(normalize_angle(bearing_rad)) <= np.deg2rad(scenario.field_of_view_deg) / 2
+    frames, bearing_rad, range_m = frames[in_view], bearing_rad[in_view], range_m[in_view]
+    raised, std_rad = np.ones(len(frames), dtype=bool), _hand_std_rad(scenario, range_m)
+    hands = _Rows(frames, bearing_rad, range_m, std_rad, raised)
+    frames, bearing_rad, range_m = _places(scenario, counts[1], drawn[1], yaw_rad)
+    std_rad = np.full(len(frames), _CLUSTER_BEARING_STD_RAD)
+    return hands, _Rows(frames, bearing_rad, range_m, std_rad, np.zeros(len(frames), dtype=bool))
+
+
+def _places(
+    scenario: PeopleScenario, counts: IntArray, drawn: list[FloatArray], yaw_rad: FloatArray
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Frame, bearing and range of numbers drawn from [0, 1), as many a frame as `counts` says."""
+    frames = np.repeat(np.arange(len(counts)), counts)
+    lower, upper = np.array(scenario.area_m[0::2]), np.array(scenario.area_m[1::2])
+    xy = lower + (upper - lower) * np.concatenate([np.zeros((0, 2)), *drawn])
+    bearing_rad = np.arctan2(xy[:, 1], xy[:, 0]) - yaw_rad[frames]
+    return frames, bearing_rad, np.linalg.norm(xy, axis=-1)

@@ -9,7 +9,7 @@ import numpy as np
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Hands, Truth
-from tracker.evaluation.trials.people_trial import TrialScores
+from tracker.evaluation.metrics.scores import TrialScores
 from tracker.evaluation.trials.scenario import ScanScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.pipeline import Pipeline
@@ -35,7 +35,7 @@ def scan_trial(scenario: ScanScenario, config: Config, seed: int, trial: int) ->
         trial: From 0.
 
     Returns:
-        The row of `TrialScores`.
+        The figures of `metrics.scores.score_trial`.
     """
     scores = TrialScores(config)
     for truth, result in play_scan_trial(scenario, config, seed, trial):

@@ -67,3 +67,10 @@ def test_an_unknown_scenario_names_those_there_are():
 def test_no_trials_and_negative_seeds_are_refused(trials, seed):
     with pytest.raises(ConfigError, match=f"{trials} trials of seed {seed}"):
         monte_carlo("model-matched", trials, seed)
+
+
+def test_a_study_of_the_whole_tracker_tells_how_many_people_its_ellipses_hold():
+    study = monte_carlo(SHORT, 6, seed=2)
+    (covered,) = [figure for figure in study.figures if "95 % ellipse" in figure.name]
+    assert covered.value == pytest.approx(study.rows["covered_share"].mean())
+    assert 0.9 < covered.low < covered.value < covered.high

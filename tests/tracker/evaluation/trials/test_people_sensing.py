@@ -21,20 +21,20 @@ PLAIN = PeopleScenario(
 def measured(scenario, seed=1):
     rng = np.random.default_rng(seed)
     scene = draw_scene(scenario, rng)
-    return scene, [sensed.measurements for sensed in sense(scenario, scene, rng)]
+    return scene.truth, [sensed.measurements for sensed in sense(scenario, scene, rng)]
 
 
-def errors(scene, frames):
+def errors(truth, frames):
     """Measured minus true bearing and range of a single person, shape (T, 2)."""
     values = np.array([item.values[0] for item in frames])
-    xy = scene.xy_m[:, 0]
-    truth = np.stack([np.arctan2(xy[:, 1], xy[:, 0]), np.linalg.norm(xy, axis=-1)], axis=-1)
-    return values - truth
+    xy = truth.xy_m[:, 0]
+    polar = np.stack([np.arctan2(xy[:, 1], xy[:, 0]), np.linalg.norm(xy, axis=-1)], axis=-1)
+    return values - polar
 
 
 def test_noise_is_as_large_as_stated():
-    scene, frames = measured(PLAIN)
-    error = errors(scene, frames)
+    truth, frames = measured(PLAIN)
+    error = errors(truth, frames)
     covariance = np.array([item.covariance[0] for item in frames])
     normalized = (error**2 / covariance[:, [0, 1], [0, 1]]).sum()
     low, high = chi2.ppf([0.0005, 0.9995], error.size)
@@ -49,8 +49,8 @@ def test_people_are_missed_as_often_as_stated(share):
 
 
 def test_outliers_are_as_frequent_as_stated():
-    scene, frames = measured(dataclasses.replace(PLAIN, outlier_share=0.2, outlier_m=1000.0))
-    off = errors(scene, frames)[:, 1] > 1.0
+    truth, frames = measured(dataclasses.replace(PLAIN, outlier_share=0.2, outlier_m=1000.0))
+    off = errors(truth, frames)[:, 1] > 1.0
     low, high = binom.ppf([0.0005, 0.9995], len(frames), 0.2)
     assert low <= off.sum() <= high
 
@@ -66,17 +66,17 @@ def test_latency_shows_where_people_were():
     late = dataclasses.replace(
         PLAIN, latency_s=0.4, pause_s=0.0, bearing_std_deg=0.001, range_std_m=1e-4
     )
-    scene, frames = measured(late)
+    truth, frames = measured(late)
     ranges = np.array([item.values[0, 1] for item in frames])
-    before = np.linalg.norm(scene.xy_m[:-4, 0], axis=-1)
+    before = np.linalg.norm(truth.xy_m[:-4, 0], axis=-1)
     np.testing.assert_allclose(ranges[4:], before, atol=1e-3)
 
 
 def test_a_turned_robot_still_points_at_people():
     turning = dataclasses.replace(PLAIN, turn_amplitude_deg=60.0, bearing_std_deg=0.001)
-    scene, frames = measured(turning)
+    truth, frames = measured(turning)
     pointed = np.array([item.values[0, 0] + item.sensor_pose[0, 2] for item in frames])
-    xy = scene.xy_m[:, 0]
+    xy = truth.xy_m[:, 0]
     np.testing.assert_allclose(pointed, np.arctan2(xy[:, 1], xy[:, 0]), atol=1e-3)
 
 
@@ -95,7 +95,7 @@ def test_lowered_hands_come_from_the_scan_alone():
         hand_down_s=(8.0, 8.0),
         scan_detection_probability=1.0,
     )
-    scene, frames = measured(down)
+    truth, frames = measured(down)
     for frame, item in enumerate(frames):
-        assert item.raised.sum() == scene.hand_up[frame].sum()
+        assert item.raised.sum() == truth.hand_up[frame].sum()
         assert (~item.raised).sum() == 1
