@@ -25,7 +25,6 @@ setup(
             "pytest-xdist>=3.5,<4",
             "pytest-timeout>=2.3,<3",
             "hypothesis>=6.100,<7",
-            "filterpy>=1.4.5,<3",
             "ai-edge-litert>=1.2,<3",
             "rosbags-image>=0.10,<0.12",
             "stonesoup>=1.9,<2",
