@@ -1,11 +1,9 @@
-"""The trackers that benchmarks compare, by name, and how sure a difference between them is."""
+"""The trackers that benchmarks compare, by name."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TypeAlias, get_args
-
-import numpy as np
 
 from tracker import Config, PersonTracker, Tracks
 from tracker.evaluation.trials.people_sensing import Sensed
@@ -39,13 +37,3 @@ def begin(name: str, config: Config) -> Follow:
     return lambda stamp_ns, sensed: tracker.step(
         stamp_ns, sensed.measurements, view=sensed.view, scan_view=sensed.scan_view
     )
-
-
-def paired_interval(difference: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
-    """95 % bootstrap interval of the mean; NaN at both ends where there is nothing to compare."""
-    difference = difference[np.isfinite(difference)]
-    if len(difference) == 0:
-        return float("nan"), float("nan")
-    means = rng.choice(difference, (4000, len(difference))).mean(axis=1)
-    low, high = np.quantile(means, [0.025, 0.975])
-    return float(low), float(high)

@@ -26,10 +26,10 @@ from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
-from _contestants import begin, contestants, paired_interval
+from _contestants import begin, contestants
+from _paired import Rows, comparison, mean
 from rich.console import Console
 from rich.progress import track
-from rich.table import Table
 
 from tracker import Config, Tracks
 from tracker.containers import FloatArray, Truth
@@ -214,13 +214,9 @@ class Scores:
             yield in_reach * frame_s, (len(ranges) - in_reach) * frame_s, range_m
 
 
-def mean(values: FloatArray | list[float]) -> float:
-    return float(np.mean(values)) if len(values) else float("nan")
-
-
 def score_window(
     scenario: PeopleScenario, names: tuple[str, ...], seed: int, window: int
-) -> dict[str, dict[str, float]] | str:
+) -> Rows | str:
     """Figures of each tracker, or why there are none."""
     assert scenario.recording is not None
     recording = zlib.crc32(Path(scenario.recording).name.encode())
@@ -235,30 +231,6 @@ def score_window(
             scores.add(truth, follow(truth.stamp_ns, sensed))
         rows[name] = scores.row()
     return rows
-
-
-def comparison(title: str, rows: list[dict[str, dict[str, float]]]) -> Table:
-    """Means of every tracker, and paired differences from the first."""
-    table = Table(title=title, title_justify="left")
-    first, *others = rows[0]
-    for column in ("", "tracker", "mean", f"minus {first}", "95 % interval"):
-        table.add_column(column, justify="left" if column in ("", "tracker") else "right")
-    rng = np.random.default_rng(0)
-    for figure, label in FIGURES.items():
-        of = {name: np.array([row[name][figure] for row in rows]) for name in rows[0]}
-        table.add_row(label, first, f"{np.nanmean(of[first]):.3f}", "", "")
-        for name in others:
-            difference = of[name] - of[first]
-            low, high = paired_interval(difference, rng)
-            table.add_row(
-                "",
-                name,
-                f"{np.nanmean(of[name]):.3f}",
-                f"{np.nanmean(difference):+.3f}",
-                f"{low:+.3f} to {high:+.3f}",
-            )
-        table.add_section()
-    return table
 
 
 def main() -> None:
@@ -295,7 +267,7 @@ def main() -> None:
     if rows:
         sets = ", ".join(file.stem for file in recordings)
         title = f"{len(rows)} windows of {words.seconds:g} s ({sets}), seed {words.seed}"
-        Console().print(comparison(title, rows))
+        Console().print(comparison(title, FIGURES, rows))
 
 
 if __name__ == "__main__":
