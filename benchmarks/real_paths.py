@@ -75,7 +75,7 @@ FIGURES = {
     "missed_share": "missed share",
     "false_tracks": "false tracks/frame",
     "gone_s": "gone: tracked, s",
-    "out_of_reach_s": "beyond: tracked, s",
+    "beyond_s": "beyond: tracked, s",
 }
 
 
@@ -193,7 +193,7 @@ class Scores:
             "missed_share": float(missed.sum() / people.sum()) if people.any() else np.nan,
             "false_tracks": float(false.mean()),
             "gone_s": mean([in_reach_s for in_reach_s, _, range_m in left if range_m < SCORED_M]),
-            "out_of_reach_s": mean([beyond_s for _, beyond_s, _ in left if beyond_s > 0.0]),
+            "beyond_s": mean([beyond_s for _, beyond_s, _ in left if beyond_s > 0.0]),
         }
 
     def _left(self) -> Iterator[tuple[float, float, float]]:
