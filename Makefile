@@ -30,7 +30,7 @@ demo: $(VENV)/.installed  ## simulate a restaurant, replay it, print who raised 
 
 test: $(VENV)/.installed-$(TESTED)  ## run the tests
 	@# Compiled once beforehand, for all the processes that follow.
-	$(BIN)/python -c 'from tracker.tracking.ready import compile_tracker; compile_tracker(print)'
+	$(BIN)/python -c 'from tracker.tracking.machine_frame import compile_tracker; compile_tracker(print)'
 	$(PYTEST) -n auto --maxprocesses 2 -m "not slow" $(if $(NUMPY),--ignore=tests/notebooks)
 ifeq ($(NUMPY),)
 	$(PYTEST) $(REAL_TIME) || $(PYTEST) $(REAL_TIME) --last-failed

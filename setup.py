@@ -29,7 +29,6 @@ setup(
             "rosbags-image>=0.10,<0.12",
             "stonesoup>=1.9,<2",
             "optuna>=4,<5",
-            "numba>=0.60,<0.70; python_version < '3.15'",
             "cyclonedds==11.0.1; python_version < '3.14'",
             "distributed>=2024.8,<2027",
             "pyarrow>=16,<26",

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from typing import TypeAlias, get_args
 
 from tracker import Config, PersonTracker, Tracks
+from tracker.containers.as_positions import as_positions
 from tracker.evaluation.trials.people_sensing import Sensed
-from tracker.tracking.reference import ReferenceTracker, as_positions
+from tracker.tracking.reference import ReferenceTracker
 
 #: Takes in one frame: its stamp in nanoseconds and what the sensors gave.
 Follow: TypeAlias = Callable[[int, Sensed], Tracks]

@@ -6,12 +6,12 @@ Everybody is tracked and measured in every frame, far enough apart that no track
 Contenders take turns in a new order each time, so that other work on the machine slows all alike;
 medians over the turns, of the ratios too, which compare what ran side by side. With turns of one
 frame everybody finds the caches cold, as on a robot whose perception works in between; with longer
-turns they are warm, as in a study. The product's frames are compiled where numba is installed, and
-compared with those that are not.
+turns they are warm, as in a study. The product's frames are compiled beforehand, and compared
+with those that are not.
 
   plain       product: constant velocity, Hungarian, Gaussian ranges
   default     product: every default (stand-or-walk IMM, heavy-tailed ranges, occlusion, existence)
-  no numba    the same defaults, by NumPy alone
+  no numba    the same defaults, as Python runs them
   filterpy    one KalmanFilter per person, predict + update, measurements already assigned
   norfair, motpy, Stone Soup (2-D assignment): as their documentation sets them up
 
@@ -36,7 +36,8 @@ from rich.console import Console
 from rich.table import Table
 
 from tracker import Config, Measurements, PersonTracker
-from tracker.tracking.view import View
+from tracker.containers import View
+from tracker.tracking.machine_frame import compile_tracker
 
 PERIOD_S = 0.1
 STD_M = 0.05
@@ -207,6 +208,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=12.0, help="for each number of people")
     parser.add_argument("--turn", type=int, default=1, help="frames of one contender in a row")
     words = parser.parse_args()
+    compile_tracker(print)
     warnings.filterwarnings("ignore", module="norfair|motpy|filterpy|stonesoup")
     cost, ratio = (Table(title=title, title_justify="left") for title in (
         "median microseconds of a frame", "times as much as `plain`"

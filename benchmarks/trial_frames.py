@@ -32,10 +32,10 @@ from stonesoup.types.detection import Detection
 from stonesoup.types.hypothesis import SingleHypothesis
 from stonesoup.types.state import GaussianState
 from stonesoup.types.track import Track
+from tracker.tracking.filter import update
 
 from tracker import Config, Measurements, PersonTracker
 from tracker.evaluation.trials.batched_tracker import BatchedTracker
-from tracker.tracking.filter import update
 from tracker.tracking.motion import predict
 
 PERIOD_S, BEARING_STD_RAD, RANGE_STD_M, DENSITY = 0.1, 0.01, 0.05, 0.3

@@ -43,7 +43,7 @@ from nodes.topics import (
 from tracker.config import Config
 from tracker.errors import TrackerError
 from tracker.messages import Encoded
-from tracker.tracking.ready import compile_tracker
+from tracker.tracking.machine_frame import compile_tracker
 
 _CLASSES = {
     f"{package}/msg/{kind.__name__}": kind

@@ -384,9 +384,10 @@ class Config(BaseModel):
         group="tracking", live=True,
         search=Search("method"),
     )  # fmt: skip
-    association: Literal["hungarian", "jpda"] = _parameter(
-        "jpda", "Whose measurement is it? jpda: every measurement in the gate counts by its "
-        "probability; hungarian: the most likely one-to-one assignment, somewhat cheaper.",
+    association: Literal["pda", "hungarian", "jpda"] = _parameter(
+        "pda", "Whose measurement is it? pda: the most likely one-to-one assignment decides, and "
+        "the probability of the pair says how much it counts; hungarian: what is assigned counts "
+        "in full; jpda: every measurement in the gate counts by its probability.",
         group="tracking", live=True,
         search=Search("method"),
     )  # fmt: skip

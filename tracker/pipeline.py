@@ -30,8 +30,9 @@ from tracker.ranging import (
     mend_scan,
     scan_people,
 )
-from tracker.tracking import PersonTracker, View, approach_pose, customer_pose
-from tracker.tracking.innovations import Watch
+from tracker.selection import approach_pose, customer_pose
+from tracker.tracking import PersonTracker, View
+from tracker.tracking.trace import Watch
 from tracker.transforms import StampedTransform, Transforms
 from tracker.waiting import Verdict, WaitingImage, WaitingRoom
 

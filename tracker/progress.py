@@ -205,7 +205,7 @@ def fetch_models_if_needed(console: Console) -> None:
 
 def compile_tracker_first(console: Console) -> None:
     """Compile the tracker before the work, and say so where that takes a minute."""
-    from tracker.tracking.ready import compile_tracker
+    from tracker.tracking.machine_frame import compile_tracker
 
     def say(text: str) -> None:
         console.print(text, highlight=False, markup=False, soft_wrap=True)

@@ -27,7 +27,7 @@ from tracker.replay_outputs import ReplayOutputs, replay_files
 from tracker.report.history import History
 from tracker.report.overview import draw_overview
 from tracker.report.summary import summarize, write_summary
-from tracker.tracking.innovations import Watch
+from tracker.tracking.trace import Watch
 from tracker.waiting import Verdict
 from tracker.wording import listing
 

@@ -12,8 +12,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tracker import Config, Measurements, PersonTracker
+from tracker.containers import View
 from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
-from tracker.tracking.view import View
 
 RATE_HZ, END_S = 10, 12.0
 HAND_UP_S, MISSED_S, LEAVES_S = (1.0, 4.0), (2.5, 2.6), 7.0

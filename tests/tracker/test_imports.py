@@ -18,7 +18,7 @@ FLOORS = [
     {"parameter_file", "retired_parameters"},
     {"containers", "config"},
     {"geometry", "config_file", "lens"},
-    {"camera", "transforms"},
+    {"camera", "transforms", "compiling", "selection"},
     {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
     {"problems", "picture_camera", "locating"},
     {"pipeline", "recording"},

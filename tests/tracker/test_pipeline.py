@@ -301,8 +301,8 @@ def circles_scan(stamp_ns, *centers, radius=0.07):
 def test_the_camera_s_field_of_view_decides_who_is_missed_without_a_scan(located):
     play(located, 6)
     located.detector.wrists_px = ()
-    assert len(play(located, 20, START_NS + 6 * PERIOD_NS, scan=None)[-1].tracks) == 1
-    in_view = play(located, 30, START_NS + 26 * PERIOD_NS, scan=None)[-1]
+    assert len(play(located, 19, START_NS + 6 * PERIOD_NS, scan=None)[-1].tracks) == 1
+    in_view = play(located, 30, START_NS + 25 * PERIOD_NS, scan=None)[-1]
     assert len(in_view.tracks) == 0
 
 

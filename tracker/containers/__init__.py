@@ -18,6 +18,7 @@ from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
 from tracker.containers.sensor_kind import SensorKind
 from tracker.containers.sensors import CameraImage, Scan
 from tracker.containers.tracks import Tracks
+from tracker.containers.view import View
 
 __all__ = [
     "BoolArray",
@@ -36,5 +37,6 @@ __all__ = [
     "SensorKind",
     "Tracks",
     "Truth",
+    "View",
     "check_stamp",
 ]

@@ -25,11 +25,11 @@ def check_stamp(stamp_ns: int) -> None:
     """Refuse what is no stamp.
 
     Raises:
-        ClockError: Negative, or not an integer.
+        ClockError: Negative, beyond 63 bits, or not an integer.
     """
-    if not isinstance(stamp_ns, (int, np.integer)) or stamp_ns < 0:
+    if not isinstance(stamp_ns, (int, np.integer)) or not 0 <= stamp_ns < 2**63:
         raise ClockError(
-            f"A stamp of {stamp_ns!r} ns came; stamps are integer nanoseconds from 0 on."
+            f"A stamp of {stamp_ns!r} ns came; stamps are integer nanoseconds from 0 to 2**63 - 1."
         )
 
 

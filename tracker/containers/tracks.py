@@ -49,6 +49,8 @@ class Tracks:
         unseen_s: Shape (N,): since a measurement last touched the position (freshness).
         hand: Shape (N,), int64: row of this image's `Hands` that belongs to the person, or -1.
         selected_id: The customer who is served, or None.
+        refused: How many measurements told nothing: nobody's, and too little to show somebody new
+            (a range alone).
     """
 
     stamp_ns: int
@@ -63,12 +65,18 @@ class Tracks:
     unseen_s: FloatArray
     hand: IntArray
     selected_id: int | None = None
+    refused: int = 0
 
     def __post_init__(self) -> None:
         check_rows(self, len(self.id), _LAYOUT)
 
     def __len__(self) -> int:
         return len(self.id)
+
+    @property
+    def customer(self) -> BoolArray:
+        """Shape (N,), bool: a hand has been up; others are bystanders, with identities below 0."""
+        return self.id > 0
 
     def __getitem__(self, rows: Any) -> Tracks:
         return select(self, rows)

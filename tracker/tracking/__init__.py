@@ -1,7 +1,6 @@
-"""Measurements -> Tracks: predict, gate, associate, update, life cycle, streaks, selection."""
+"""Measurements -> Tracks: predict, gate, associate, update, life cycle, streaks."""
 
+from tracker.containers import View
 from tracker.tracking.person_tracker import PersonTracker
-from tracker.tracking.poses import approach_pose, customer_pose
-from tracker.tracking.view import View
 
-__all__ = ["PersonTracker", "View", "approach_pose", "customer_pose"]
+__all__ = ["PersonTracker", "View"]

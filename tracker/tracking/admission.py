@@ -1,142 +1,147 @@
-"""Which measurements may come in? Sane numbers, once per person, with honest noise."""
+"""Which measurements come in, and which go together? Hands once per person, sensor by sensor."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray, Measurements, SensorKind
-from tracker.containers.measurement_check import (
-    ABSURD_M,
-    BEARING_VARIANCE_MAX,
-    VARIANCE_MAX,
-    VARIANCE_MIN,
-)
-from tracker.tracking.filter import positions
+from tracker.compiling.loops import loop, maker, step
+from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.tracking.claims import Claims
+from tracker.tracking.people import RAISED, People
+from tracker.tracking.sensor_kinds import BEARING, BEARING_RANGE, RANGE, begin
+from tracker.tracking.settings import Settings
 
 #: A hand that is up may be so far from where its owner is expected (guess).
 CALLER_REACH_M = 0.7
-#: Frames closer together than this are as one where errors are alike.
-_INTERVAL_MIN_S = 0.01
 
 
-def usable(measurements: Measurements) -> BoolArray:
-    """Shape (M,): rows that a filter can live with, finite and with a positive definite R."""
-    if _is_plain(measurements):
-        return np.ones(len(measurements), dtype=bool)
-    values, covariance = measurements.values, measurements.covariance
-    first, second, mixed = covariance[:, 0, 0], covariance[:, 1, 1], covariance[:, 0, 1]
-    polar = measurements.kind != SensorKind.POSITION
-    far = np.abs(values) < ABSURD_M  # NaN compares as false, which is what is meant throughout
-    pose = np.abs(measurements.sensor_pose).max(axis=1, initial=0.0) < ABSURD_M
-    sane = far[:, 0] & (far[:, 1] | (polar & np.isnan(values[:, 1]))) & pose
-    sane &= ~(polar & (values[:, 1] < 0.0))
-    sane &= (np.minimum(first, second) > VARIANCE_MIN) & (second < VARIANCE_MAX)
-    sane &= first < np.where(polar, BEARING_VARIANCE_MAX, VARIANCE_MAX)
-    if mixed.any() or covariance[:, 1, 0].any():
-        # The correlation must be below one, with room for rounding.
-        spread = np.sqrt(np.where(sane, first, 1.0) * np.where(sane, second, 1.0))
-        sane &= np.abs(mixed) < (1.0 - 1e-9) * spread
-        mirrored = np.where(sane, covariance[:, 1, 0], 0.0)
-        sane &= np.abs(np.where(sane, mixed, 0.0) - mirrored) <= 1e-9 * spread
-    if measurements.sensor_pose_covariance.any():
-        sane &= is_semidefinite(measurements.sensor_pose_covariance)
-    return np.asarray(sane)
+class Rounds(NamedTuple):
+    """Measurements in the order in which they count: round after round, raised hands first.
+
+    A round is what one sensor says, and within it nobody has more than one measurement: what a
+    sensor says of one body a second time has a round of its own.
+
+    Attributes:
+        rows: Shape (C,): of the claims.
+        begins: Shape (R + 1,): of round i the rows begin at begins[i], and end at begins[i + 1].
+        raised: How many rounds are raised hands.
+    """
+
+    rows: IntArray
+    begins: IntArray
+    raised: int
 
 
-def _is_plain(measurements: Measurements) -> bool:
-    """Every row has a range or position and is beyond doubt: said of all at once, it is cheap."""
-    if len(measurements) == 0 or measurements.sensor_pose_covariance.any():
+@maker
+def plan_rounds(people: People, mean: FloatArray, claims: Claims, settings: Settings) -> Rounds:
+    """Who comes in, and in which round.
+
+    Args:
+        people: N, predicted.
+        mean: Shape (1, N, 4), over the modes.
+        claims: M claims.
+        settings: Of the tracker.
+    """
+    count = len(claims.kind)
+    rows, begins = np.empty(count, np.int64), np.empty(count + 1, np.int64)
+    is_left = np.empty(count, np.bool_)
+    for row in range(count):
+        is_left[row] = not claims.raised[row]
+    for number in range(_hands_once(people, mean, claims, settings, rows)):
+        is_left[rows[number]] = True
+    filled = rounds = raised_rounds = 0
+    begins[0] = 0
+    for is_raised in (True, False):
+        for leader in range(count):
+            while is_left[leader] and claims.raised[leader] == is_raised:
+                filled = _fill_round(claims, leader, is_left, rows, filled)
+                rounds += 1
+                begins[rounds] = filled
+        if is_raised:
+            raised_rounds = rounds
+    return Rounds(rows[:filled], begins[: rounds + 1], raised_rounds)
+
+
+@loop
+def _fill_round(
+    claims: Claims, leader: int, is_left: BoolArray, rows: IntArray, filled: int
+) -> int:
+    """Take all of a claim's sensor into its round, those of one kind side by side."""
+    begin = filled
+    for kind in range(4):
+        for row in range(leader, len(is_left)):
+            is_mine = is_left[row] and claims.kind[row] == kind
+            is_mine = is_mine and claims.raised[row] == claims.raised[leader]
+            if is_mine and is_one_sensor(claims, row, leader):
+                is_second = False
+                for earlier in range(begin, filled):
+                    body = claims.body[rows[earlier]]
+                    is_second = is_second or (body >= 0 and body == claims.body[row])
+                if not is_second:
+                    rows[filled], is_left[row] = row, False
+                    filled += 1
+    return filled
+
+
+@loop
+def is_one_sensor(claims: Claims, row: int, other: int) -> bool:
+    """Whether two claims were measured alike from the same place.
+
+    A camera whose hands have a range now and then is one sensor.
+    """
+    kind, alike = claims.kind[row], claims.kind[other]
+    kind = BEARING_RANGE if kind == BEARING else kind
+    alike = BEARING_RANGE if alike == BEARING else alike
+    if kind != alike:
         return False
-    noise = measurements.covariance.reshape(-1, 4)
-    low, mixed, mixed_too, low_second = noise.min(axis=0).tolist()
-    high, mixed_high, mixed_too_high, high_second = noise.max(axis=0).tolist()
-    return bool(
-        mixed == mixed_too == mixed_high == mixed_too_high == 0.0
-        and min(low, low_second) > VARIANCE_MIN
-        and high < BEARING_VARIANCE_MAX
-        and high_second < VARIANCE_MAX
-        and np.abs(measurements.values).max() < ABSURD_M
-        and np.abs(measurements.sensor_pose).max() < ABSURD_M
-        and (measurements.values[:, 1].min() >= 0.0 or measurements.kind.all())
-    )
+    for i in range(3):
+        if claims.pose[row, i] != claims.pose[other, i]:
+            return False
+        for j in range(3):
+            if claims.doubt[row, i, j] != claims.doubt[other, i, j]:
+                return False
+    return True
 
 
-def once_per_person(raised: Measurements, callers_m: FloatArray, config: Config) -> Measurements:
-    """Two raised hands of one person count once: the first row of each person stays.
+@maker
+def _hands_once(
+    people: People, mean: FloatArray, claims: Claims, settings: Settings, kept: IntArray
+) -> int:
+    """Two raised hands of one person that one sensor shows count once: write the first rows down.
 
-    Hands close together are one person's, but as many of them count as customers call there.
-
-    Args:
-        raised: Raised hands.
-        callers_m: Shape (C, 2): where customers are expected whose hands were up.
-        config: `unknown_range_m`, `same_person_distance_m`.
+    Hands close together are one person's, unless somebody knows better, but as many of them count
+    as customers call there. Whoever has been counted keeps out the rows after them, and only those
+    who count do.
     """
-    if len(raised) < 2:
-        return raised
-    if raised.person.max() >= 0:
-        _, first = np.unique(raised.person, return_index=True)
-        keep = raised.person < 0
-        keep[first] = True
-        raised = raised[keep]
-    xy = positions(raised, config.unknown_range_m)
-    close: BoolArray = is_close(xy, xy, config.same_person_distance_m)
-    if np.count_nonzero(close) <= len(raised):  # everybody is close to themselves alone
-        return raised
-    keep = np.ones(len(raised), dtype=bool)
-    callers = is_close(xy, callers_m, CALLER_REACH_M).sum(axis=1)
-    for row in np.flatnonzero(np.tril(close, -1).any(axis=1)):
-        keep[row] = np.count_nonzero(close[row, :row] & keep[:row]) < max(1, callers[row])
-    return raised[keep]
+    x_m, y_m, count = np.empty(len(kept)), np.empty(len(kept)), 0
+    for row in range(len(kept)):
+        if not claims.raised[row]:
+            continue
+        near = 0
+        x, y, _, _, _ = begin(claims.kind[row], claims, row, settings)
+        if claims.kind[row] == RANGE:  # a range alone says nothing of a place
+            x = y = np.inf
+        for earlier in range(count):
+            other = kept[earlier]
+            is_known = claims.body[row] >= 0 and claims.body[row] == claims.body[other]
+            if is_known or not is_one_sensor(claims, row, other):
+                continue
+            across, along = x - x_m[earlier], y - y_m[earlier]
+            near += across * across + along * along < settings.same_person_distance_m**2
+        if near == 0 or near < _callers(x, y, people, mean):
+            kept[count], x_m[count], y_m[count] = row, x, y
+            count += 1
+    return count
 
 
-def is_close(xy_m: FloatArray, others_m: FloatArray, distance_m: float) -> BoolArray:
-    """Shape (A, B): which points are closer together than a distance."""
-    square = xy_m[:, None, 0] - others_m[:, 0]
-    square *= square
-    across = xy_m[:, None, 1] - others_m[:, 1]
-    across *= across
-    square += across
-    return np.asarray(square < distance_m**2)
-
-
-def with_hand_bias(raised: Measurements, dt_s: float, config: Config) -> Measurements:
-    """Widen bearings whose errors are alike from frame to frame.
-
-    A raised hand stands beside the body, to the same side for as long as it is up. Errors with the
-    correlation rho from frame to frame tell, over many frames, as much as independent ones with
-    (1 + rho) / (1 - rho) times the variance. Where the scan has shown the body itself, its range
-    is known and there is no such bias. The first look at somebody is taken for worse than it is.
-
-    Args:
-        raised: Raised hands.
-        dt_s: Since the last frame.
-        config: `hand_bias_duration_s`; 0 changes nothing.
-    """
-    alone = np.isnan(raised.values[:, 1])
-    if config.hand_bias_duration_s == 0.0 or not alone.any():
-        return raised
-    noise = np.array(raised.covariance)
-    noise[alone, 0, 0] = np.minimum(
-        noise[alone, 0, 0] * hand_bias(dt_s, config), BEARING_VARIANCE_MAX
-    )
-    return replace(raised, covariance=noise)
-
-
-def hand_bias(dt_s: float, config: Config) -> float:
-    """How many times the variance of independent errors such bearings have; 1 where it is off."""
-    if config.hand_bias_duration_s == 0.0:
-        return 1.0
-    alike = np.exp(-max(dt_s, _INTERVAL_MIN_S) / config.hand_bias_duration_s)
-    return float((1.0 + alike) / (1.0 - alike))
-
-
-def is_semidefinite(covariance: FloatArray) -> BoolArray:
-    """Shape (M,): which of the matrices, shape (M, 3, 3), could be a covariance."""
-    finite = np.asarray((np.abs(covariance) < VARIANCE_MAX).all(axis=(1, 2)))
-    safe = np.where(finite[:, None, None], covariance, 0.0)
-    symmetric = np.abs(safe - np.swapaxes(safe, 1, 2)).max(axis=(1, 2))
-    least, most = np.linalg.eigvalsh(safe)[:, [0, -1]].T
-    return np.asarray(finite & (symmetric <= 1e-9 * most) & (least >= -1e-9 * most))
+@step
+def _callers(x: float, y: float, people: People, mean: FloatArray) -> int:
+    """How many call who are expected there."""
+    count = 0
+    for person in range(people.flags.shape[1]):
+        across, along = x - mean[0, person, 0], y - mean[0, person, 1]
+        is_there = across * across + along * along < CALLER_REACH_M**2
+        count += people.flags[RAISED, person] and is_there
+    return count

@@ -2,38 +2,124 @@
 
 from __future__ import annotations
 
-from tracker.config import Config
-from tracker.containers import Measurements
-from tracker.tracking.innovations import Watch
-from tracker.tracking.observation import observe
-from tracker.tracking.people import People
-from tracker.tracking.renewal import renew
-from tracker.tracking.view import View
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from tracker.compiling.loops import maker
+from tracker.containers import FloatArray
+from tracker.tracking.admission import plan_rounds
+from tracker.tracking.association import associate
+from tracker.tracking.claims import Claims
+from tracker.tracking.correction import correct_people
+from tracker.tracking.found import nothing_found, take
+from tracker.tracking.gating import find_pairs
+from tracker.tracking.instant import Instant
+from tracker.tracking.life_cycle import believe, fade
+from tracker.tracking.modes import merge_modes
+from tracker.tracking.motion import predict
+from tracker.tracking.people import MISSED, People, with_room
+from tracker.tracking.renewal import Frame, renew
+from tracker.tracking.settings import Settings
+from tracker.tracking.trace import Trace, note_round
+from tracker.tracking.view import visibility
+
+#: Of a raised hand, the chance that one counts whose owner had it down in the last frame (guess).
+RAISES_AGAIN = 0.5
+#: Nobody is ever certain to be detected, or certain not to be.
+DETECTION_MIN = 0.02
 
 
-def track(
-    people: People,
-    measurements: Measurements,
-    next_id: int,
-    dt_s: float,
-    stamp_ns: int,
-    config: Config,
-    view: View | None,
-    scan_view: View | None,
-    watch: Watch | None = None,
-) -> tuple[People, int]:
-    """Everybody after one instant, and the identity of the next customer.
+def make_frame(predict: Callable[..., Any], associate: Callable[..., Any]) -> Callable[..., Frame]:
+    """The function of one frame, with these two steps.
 
     Args:
-        people: After the last frame.
-        measurements: M claims; those that no filter can live with are passed over.
-        next_id: The identity of the next customer.
-        dt_s: Since the last frame.
-        stamp_ns: This frame's.
-        config: The tracking group.
-        view: Where the camera could see hands; None means everywhere.
-        scan_view: Where the scan could show people; None where there is no scan.
-        watch: Told of both rounds of association, raised hands first.
+        predict: As `motion.predict`.
+        associate: As `association.associate`.
     """
-    seen = observe(people, measurements, dt_s, stamp_ns, config, view, scan_view, watch)
-    return renew(seen, next_id, stamp_ns, config)
+
+    def track_frame(
+        people: People,
+        claims: Claims,
+        instant: Instant,
+        likeness: FloatArray,
+        settings: Settings,
+        trace: Trace,
+    ) -> Frame:
+        """Everybody after one instant.
+
+        Args:
+            people: N people, after the last frame.
+            claims: M claims.
+            instant: When it is, and what could be seen.
+            likeness: Shape (N, M): added to the log-odds of pairs; empty for nothing.
+            settings: Of the tracker.
+            trace: Room for what a watcher wants to know; empty where nobody watches.
+        """
+        tracks, now = people.weight.shape[1], with_room(people, 0)
+        mean, covariance = np.empty((1, tracks, 4)), np.empty((1, tracks, 4, 4))
+        predict(people, instant.dt_s, settings, now)
+        merge_modes(now.weight, now.mean, now.covariance, mean[0], covariance[0])
+        in_camera = visibility(mean, instant.camera_view)
+        in_view = _in_view(in_camera, mean, instant)
+        fade(now, covariance, instant.dt_s, in_view, settings.delete_after_s)
+        rounds = plan_rounds(now, mean, claims, settings)
+        found = nothing_found(tracks, len(claims.kind), rounds.rows)
+        for number in range(len(rounds.begins) - 1):
+            is_raised = number < rounds.raised
+            rows = rounds.rows[rounds.begins[number] : rounds.begins[number + 1]]
+            density = settings.newcomer_density if is_raised else settings.bystander_density
+            if number > 0:
+                merge_modes(now.weight, now.mean, now.covariance, mean[0], covariance[0])
+            chance = _chance(now, in_camera if is_raised else in_view, is_raised, settings)
+            pairs = find_pairs(
+                now, mean, covariance, claims, rows, chance, likeness, density, settings
+            )
+            chosen, probability = associate(pairs, tracks, len(claims.kind), settings)
+            note_round(trace, number, rows, now, chance, pairs, chosen)
+            correct_people(now, claims, pairs, probability, settings.outlier_dof)
+            believe(now, chosen, pairs, chance)
+            take(found, chosen, probability, pairs, claims)
+        return renew(now, claims, found, instant, settings)
+
+    return track_frame
+
+
+@maker
+def _in_view(in_camera: FloatArray, mean: FloatArray, instant: Instant) -> FloatArray:
+    """Shape (N,): chance of being seen by anything."""
+    if not instant.has_scan:
+        return in_camera
+    in_scan = visibility(mean, instant.scan_view)
+    for person in range(len(in_scan)):
+        in_scan[person] = max(in_scan[person], in_camera[person])
+    return in_scan
+
+
+@maker
+def _chance(
+    people: People, visible: FloatArray, is_raised: bool, settings: Settings
+) -> FloatArray:
+    """Shape (N,): of being detected in one round."""
+    chance = np.empty(len(visible))
+    for person in range(len(visible)):
+        again = 1.0
+        if is_raised and people.counts[MISSED, person] > 0:
+            again = RAISES_AGAIN
+        visible_again = visible[person] * again
+        chance[person] = max(visible_again * settings.detection_probability, DETECTION_MIN)
+    return chance
+
+
+track_frame = make_frame(predict, associate)
+
+
+def interpreted(frame: Callable[..., Frame]) -> Callable[..., Frame]:
+    """A frame as Python runs it: quiet where machine code is, about infinities that are meant."""
+
+    def run(*numbers: Any) -> Frame:
+        with np.errstate(all="ignore"):
+            return frame(*numbers)
+
+    return run

@@ -1,254 +1,215 @@
-"""Which measurements could belong to which tracks? The pairs worth a closer look, one by one.
+"""Which measurements could belong to which tracks?
 
-Most pairs are far apart, so a box that holds the gate's ellipse sorts them out first; what is left
-is a list of pairs, about as long as there are people, and everything after works on that list.
+Inside the gate is whatever has a squared distance y' inv(S) y below the chi-square quantile of
+`gate_probability`, of one number for a bearing or a range alone and of two otherwise; ranges have
+a Student-t's distance under `outlier_dof`. With two modes of motion, the one Gaussian with their
+moments decides. The log-odds of a pair say how much likelier it is than its track missed and its
+measurement somebody else's:
+
+    log( Pd N(y; 0, S) ) - log( (1 - Pd) lambda )
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import chi2
 
-from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray, IntArray, Measurements
-from tracker.geometry import normalize_angle
-from tracker.tracking.claim_groups import ClaimGroup, group_claims
-from tracker.tracking.modes import Belief
-from tracker.tracking.outliers import outlier_noise
-from tracker.tracking.sensor_model import expect_cartesian, expect_polar, pose_noise
+from tracker.compiling.loops import loop, maker, step
+from tracker.containers import FloatArray, IntArray
+from tracker.tracking.claims import Claims
+from tracker.tracking.innovation import innovation_of, noise_of, seen_from, squared_distance
+from tracker.tracking.people import TAG, People
+from tracker.tracking.sensor_kinds import BEARING, POSITION, RANGE, area
+from tracker.tracking.settings import Settings
 
 _LOG_TURN = float(np.log(2.0 * np.pi))
+#: How much a hint of identity tells, for the person whom it names and against others, as log-odds.
+LOG_IDENTITY = 5.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Pairs:
-    """P pairs of a track and a measurement inside its gate, by track, then by measurement.
+class Pairs(NamedTuple):
+    """P pairs of a track and a measurement inside its gate, by track.
 
     Attributes:
         track: Shape (P,): row of the track.
         claim: Shape (P,): row of the measurement.
-        innovation: Shape (K, P, 2), under each mode of motion.
-        jacobian: Shape (K, P, 2, 2), by x and y.
-        noise: Shape (K, P, 2, 2), raised where the range is an outlier.
-        log_likelihood: Shape (K, P), of the measurement, were it the track's.
+        log_likelihood: Shape (P, K), of the measurement, were it the track's.
         log_newcomer: Shape (P,): log-density of such measurements from nobody known.
+        log_odds: Shape (P,): against "missed, and somebody else's".
     """
 
     track: IntArray
     claim: IntArray
-    innovation: FloatArray
-    jacobian: FloatArray
-    noise: FloatArray
     log_likelihood: FloatArray
     log_newcomer: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.track)
-
-    def __getitem__(self, rows: BoolArray | IntArray) -> Pairs:
-        return Pairs(
-            self.track[rows],
-            self.claim[rows],
-            self.innovation[:, rows],
-            self.jacobian[:, rows],
-            self.noise[:, rows],
-            self.log_likelihood[:, rows],
-            self.log_newcomer[rows],
-        )
-
-    @staticmethod
-    def join(parts: list[Pairs], modes: int) -> Pairs:
-        """One list of several, in order."""
-        if len(parts) == 1:
-            return parts[0]
-        rows, none = np.zeros(0, dtype=np.int64), np.zeros((modes, 0))
-        numbers, matrices = np.zeros((modes, 0, 2)), np.zeros((modes, 0, 2, 2))
-        empty = Pairs(rows, rows, numbers, matrices, matrices, none, np.zeros(0))
-        parts = [empty, *parts]
-        joined = Pairs(
-            np.concatenate([part.track for part in parts]),
-            np.concatenate([part.claim for part in parts]),
-            np.concatenate([part.innovation for part in parts], axis=1),
-            np.concatenate([part.jacobian for part in parts], axis=1),
-            np.concatenate([part.noise for part in parts], axis=1),
-            np.concatenate([part.log_likelihood for part in parts], axis=1),
-            np.concatenate([part.log_newcomer for part in parts]),
-        )
-        return joined[np.lexsort((joined.claim, joined.track))]
+    log_odds: FloatArray
 
 
-def find_pairs(belief: Belief, claims: Measurements, config: Config) -> Pairs:
-    """Pairs whose squared distance y' inv(S) y does not exceed the gate's limit.
-
-    The limit is the chi-square quantile of `gate_probability`, with one degree of freedom for a
-    bearing alone and two otherwise; under `outlier_dof` ranges have a Student-t's distance. With
-    two modes of motion, the one Gaussian with their moments decides.
+@maker
+def find_pairs(
+    people: People,
+    mean: FloatArray,
+    covariance: FloatArray,
+    claims: Claims,
+    rows: IntArray,
+    chance: FloatArray,
+    likeness: FloatArray,
+    density: float,
+    settings: Settings,
+) -> Pairs:
+    """Pairs inside the gate.
 
     Args:
-        belief: N tracks, predicted.
-        claims: M usable measurements, of raised hands alone or of everything else.
-        config: `gate_probability`, `innovation_floor_m`, `outlier_dof`, and the densities of
-            what is nobody's.
+        people: N tracks, predicted.
+        mean: Shape (1, N, 4), over the modes.
+        covariance: Shape (1, N, 4, 4).
+        claims: M claims.
+        rows: Shape (C,): those of one sensor that count, those of one kind side by side.
+        chance: Shape (N,): of being detected.
+        likeness: Shape (N, M): added to the log-odds; empty for nothing.
+        density: Of such measurements of nobody known, per square meter.
+        settings: Of the tracker.
     """
-    density = density_of_nobody(claims, config)
-    parts = [_pairs_of_group(belief, group, density, config) for group in group_claims(claims)]
-    return Pairs.join(parts, len(belief.weight))
-
-
-def density_of_nobody(claims: Measurements, config: Config) -> float:
-    """How many such measurements of nobody known a frame has, per square meter."""
-    is_hand = len(claims) > 0 and claims.raised[0]
-    return config.newcomer_density if is_hand else config.bystander_density
-
-
-def gate_limit(ranged: bool, gate_probability: float) -> float:
-    """The largest squared distance inside the gate, of two numbers or of a bearing alone."""
-    return _quantile(gate_probability, 2 if ranged else 1)
-
-
-def squared_distance(
-    innovation: FloatArray, spread: FloatArray, dof: float = 0.0
-) -> tuple[FloatArray, FloatArray]:
-    """Squared distance of innovations, and the area their S spans.
-
-    The second number is taken given the first: y' inv(S) y is a sum of two squares then, and the
-    second square is where a Student-t's tail belongs, (nu + 1) log(1 + d^2 / nu).
-
-    Args:
-        innovation: Shape (..., 2).
-        spread: Shape (..., 2, 2): S.
-        dof: Degrees of freedom nu of the second number; 0 is Gaussian.
-
-    Returns:
-        The distance and the determinant of S, both of shape (...).
-    """
-    s00, s01 = spread[..., 0, 0], spread[..., 0, 1]
-    first = innovation[..., 0]
-    share = s01 / s00
-    rest = innovation[..., 1] - share * first
-    s_rest = spread[..., 1, 1] - share * s01
-    square = rest * rest / s_rest
-    if dof > 0.0:
-        square = (dof + 1.0) * np.log1p(square / dof)
-    return first * first / s00 + square, s00 * s_rest
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Expected:
-    """What one sensor would measure of tracks, and how uncertain the tracks make it."""
-
-    values: FloatArray  # (..., N, 2)
-    jacobian: FloatArray  # (..., N, 2, 2)
-    doubt: FloatArray | None  # (..., N, 2, 2), from the sensor's pose
-    own: FloatArray  # (..., N, 2, 2): H P H'
-    spread: FloatArray  # (..., N, 2, 2): the same with the doubt, and no less than the floor
-
-
-def _expect(
-    mean: FloatArray, covariance: FloatArray, group: ClaimGroup, config: Config
-) -> _Expected:
-    if group.polar:
-        values, jacobian = expect_polar(mean, group.sensor_pose)
-        if not group.ranged:
-            values[..., 1] = jacobian[..., 1, :] = 0.0
-    else:
-        values, jacobian = expect_cartesian(mean)
-    own = jacobian @ covariance[..., :2, :2] @ np.swapaxes(jacobian, -1, -2)
-    # Only the gate and the likelihoods see the floor, the filter does not: an over-confident
-    # track shall find its measurements, and what it makes of them stays Bayes' rule.
-    spread = own.copy()
-    floor = config.innovation_floor_m**2 * np.einsum("...ij,...ij->...i", jacobian, jacobian)
-    variance = np.einsum("...ii->...i", spread)  # a view
-    np.maximum(variance, floor, out=variance)
-    doubt = None
-    if group.sensor_pose_covariance is not None:
-        doubt = pose_noise(jacobian, group.sensor_pose_covariance)
-        if not group.ranged:
-            doubt[..., 1, :] = doubt[..., :, 1] = 0.0
-        spread += doubt
-    return _Expected(values, jacobian, doubt, own, spread)
-
-
-def _pairs_of_group(belief: Belief, group: ClaimGroup, density: float, config: Config) -> Pairs:
-    expected = _expect(belief.mean, belief.covariance, group, config)
-    dof = config.outlier_dof if group.polar and group.ranged else 0.0
-    limit = gate_limit(group.ranged, config.gate_probability)
-    one = expected  # what decides on the gate: the modes' common moments
-    if len(belief.weight) == 2:
-        mean, covariance = belief.merged()
-        one = _expect(mean[None], covariance[None], group, config)
-    track, row = _inside_box(one, group, limit, dof)
-    values, noise = group.values[row], group.noise[row]
-    innovation, spread = _pair_up(expected, track, values, noise, group.polar)
-    distance, area = squared_distance(innovation, spread, dof)
-    decisive = distance
-    if one is not expected:
-        decisive, _ = squared_distance(*_pair_up(one, track, values, noise, group.polar), dof)
-    inside = decisive[0] <= limit
-    if not inside.all():
-        track, row, noise, values = track[inside], row[inside], noise[inside], values[inside]
-        innovation, spread = innovation[:, inside], spread[:, inside]
-        distance, area = distance[:, inside], area[:, inside]
-
-    noise = np.broadcast_to(noise, spread.shape)
-    if expected.doubt is not None:
-        noise = noise + expected.doubt.take(track, axis=1)
-    if dof > 0.0:
-        noise = outlier_noise(expected.own.take(track, axis=1), innovation, noise, dof)
-    freedom = 2.0 if group.ranged else 1.0
+    modes, tracks = len(people.weight), people.weight.shape[1]
+    room = tracks * len(rows)
+    track, claim = np.empty(room, np.int64), np.empty(room, np.int64)
+    log_likelihood, log_newcomer, log_odds = (
+        np.empty((room, modes)),
+        np.empty(room),
+        np.empty(room),
+    )
+    near, pairs = np.empty(len(rows), np.int64), 0
+    for person in range(tracks):
+        count = _inside_gate(person, mean, covariance, claims, rows, near, settings)
+        log_missed = np.log(chance[person] / (1.0 - chance[person]))
+        for number in range(count):
+            row, likelihood = near[number], 0.0
+            for mode in range(modes):
+                likely = _log_likelihood(people, mode, person, claims, row, settings)
+                log_likelihood[pairs, mode] = likely
+                if modes == 2:
+                    likely += np.log(people.weight[mode, person])
+                likelihood = likely if mode == 0 else log_of_sum(likelihood, likely)
+            track[pairs], claim[pairs] = person, row
+            log_newcomer[pairs] = np.log(density * area(claims.kind[row], claims, row, settings))
+            log_odds[pairs] = likelihood - log_newcomer[pairs] + log_missed
+            log_odds[pairs] += _log_likeness(people, person, claims, row, likeness)
+            pairs += 1
     return Pairs(
-        track,
-        group.rows[row],
-        innovation,
-        expected.jacobian.take(track, axis=1),
-        noise,
-        -0.5 * (distance + np.log(area) + freedom * _LOG_TURN),
-        np.log(density * area_of(group, values, config)),
+        track[:pairs], claim[:pairs], log_likelihood[:pairs], log_newcomer[:pairs],
+        log_odds[:pairs],
+    )  # fmt: skip
+
+
+@loop
+def _inside_gate(
+    person: int,
+    mean: FloatArray,
+    covariance: FloatArray,
+    claims: Claims,
+    rows: IntArray,
+    near: IntArray,
+    settings: Settings,
+) -> int:
+    """Write down the rows inside somebody's gate, and say how many there are."""
+    count, kind = 0, -1
+    expected, own = (0.0, 0.0), (0.0, 0.0, 0.0)
+    limit, far, dof = 0.0, 0.0, 0.0
+    for place in range(len(rows)):
+        row = rows[place]
+        if claims.kind[row] != kind:
+            kind = claims.kind[row]
+            expected, h, own, doubt = seen_from(kind, mean, covariance, 0, person, claims, row)
+            own = floored(own, h, doubt, settings)
+            dof = 0.0 if kind == POSITION else settings.outlier_dof
+            limit = settings.ranged_limit
+            if kind == BEARING or kind == RANGE:
+                limit = settings.bearing_limit
+            far = limit
+            if dof > 0.0:  # ranges may be farther off, under the Student-t
+                far = max(far, dof * np.expm1(limit / (dof + 1.0)))
+        y = innovation_of(kind, expected, claims, row)
+        r = noise_of(kind, claims, row)
+        # Each number alone rules most pairs out.
+        is_near = y[0] * y[0] <= limit * (own[0] + r[0])
+        if not (is_near and y[1] * y[1] <= far * (own[2] + r[2])):
+            continue
+        s = own[0] + r[0], own[1] + r[1], own[2] + r[2]
+        if squared_distance(y, s, dof)[0] <= limit:
+            near[count] = row
+            count += 1
+    return count
+
+
+@loop
+def distance_of(
+    mean: FloatArray,
+    covariance: FloatArray,
+    mode: int,
+    person: int,
+    claims: Claims,
+    row: int,
+    settings: Settings,
+) -> tuple[float, float]:
+    """Squared distance of a claim from somebody in one mode of motion, and det S."""
+    kind = claims.kind[row]
+    expected, h, own, doubt = seen_from(kind, mean, covariance, mode, person, claims, row)
+    own = floored(own, h, doubt, settings)
+    y, r = innovation_of(kind, expected, claims, row), noise_of(kind, claims, row)
+    s = own[0] + r[0], own[1] + r[1], own[2] + r[2]
+    return squared_distance(y, s, 0.0 if kind == POSITION else settings.outlier_dof)
+
+
+@step
+def floored(
+    own: tuple[float, float, float],
+    h: tuple[float, float, float, float],
+    doubt: tuple[float, float, float],
+    settings: Settings,
+) -> tuple[float, float, float]:
+    """H P H' for gates and likelihoods, no less than `innovation_floor_m`, and the pose's doubt.
+
+    An over-confident track shall find its measurements; what it makes of them stays Bayes' rule.
+    """
+    floor = settings.innovation_floor_m**2
+    return (
+        max(own[0], floor * (h[0] * h[0] + h[1] * h[1])) + doubt[0],
+        own[1] + doubt[1],
+        max(own[2], floor * (h[2] * h[2] + h[3] * h[3])) + doubt[2],
     )
 
 
-def area_of(group: ClaimGroup, values: FloatArray, config: Config) -> FloatArray:
-    """What a unit of the measurements' own numbers covers in square meters, shape (P,).
-
-    That is 1 for a point, r for a bearing and a range, and r_max^2 / 2 for a bearing alone: a
-    density that is even over the area is so many times as large in the measurements' numbers.
-    """
-    if group.polar and group.ranged:
-        return np.maximum(values[:, 1], 0.1)
-    return np.full(len(values), config.person_range_max_m**2 / 2.0 if group.polar else 1.0)
-
-
-def _pair_up(
-    expected: _Expected, track: IntArray, values: FloatArray, noise: FloatArray, polar: bool
-) -> tuple[FloatArray, FloatArray]:
-    """Innovations of pairs, and their S."""
-    innovation = values - expected.values.take(track, axis=1)
-    if polar:
-        innovation[..., 0] = normalize_angle(innovation[..., 0])
-    return innovation, expected.spread.take(track, axis=1) + noise
+@loop
+def _log_likelihood(
+    people: People, mode: int, person: int, claims: Claims, row: int, settings: Settings
+) -> float:
+    """Log N(y; 0, S) of a claim, were it somebody's, in one mode of motion."""
+    distance, spanned = distance_of(
+        people.mean, people.covariance, mode, person, claims, row, settings
+    )
+    numbers = 1.0 if claims.kind[row] == BEARING or claims.kind[row] == RANGE else 2.0
+    return -0.5 * (distance + np.log(spanned) + numbers * _LOG_TURN)
 
 
-def _inside_box(
-    expected: _Expected, group: ClaimGroup, limit: float, dof: float
-) -> tuple[IntArray, IntArray]:
-    """Pairs inside the boxes around the gates' ellipses: rows of tracks, and of the group."""
-    variance = expected.spread[0].diagonal(axis1=-2, axis2=-1) + group.noise.max(axis=0).diagonal()
-    tail = max(limit, dof * np.expm1(limit / (dof + 1.0)) if dof > 0.0 else 0.0)
-    half = np.sqrt(variance * [limit, tail])
-    apart = group.values[:, 1] - expected.values[0, :, None, 1]
-    # The second number first: it does not wrap, and leaves fewer pairs for the one that does.
-    inside = np.abs(apart, out=apart) <= half[:, 1:]
-    track, row = np.divmod(np.flatnonzero(inside), len(group.values))
-    first = group.values[row, 0] - expected.values[0, track, 0]
-    if group.polar:
-        first = normalize_angle(first)
-    near = np.abs(first) <= half[track, 0]
-    return track[near], row[near]
+@step
+def _log_likeness(
+    people: People, person: int, claims: Claims, row: int, likeness: FloatArray
+) -> float:
+    """What else speaks for a pair: the caller's own likeness, and a hint of identity."""
+    known, hint = people.counts[TAG, person], claims.tag[row]
+    told = 0.0
+    if known >= 0 and hint >= 0:
+        told = LOG_IDENTITY if known == hint else -LOG_IDENTITY
+    if len(likeness) > 0:
+        told += likeness[person, row]
+    return told
 
 
-@lru_cache(maxsize=32)
-def _quantile(gate_probability: float, freedom: int) -> float:
-    return float(chi2.ppf(gate_probability, freedom))
+@step
+def log_of_sum(first: float, second: float) -> float:
+    """log(exp(a) + exp(b)) without overflow."""
+    most = max(first, second)
+    if most == -np.inf:
+        return most
+    return most + np.log1p(np.exp(-abs(first - second)))

@@ -6,14 +6,27 @@ hand nor scan shows somebody, although in view, lets existence fade and ends a t
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray
-from tracker.tracking.modes import Belief
-from tracker.tracking.people import People
+from tracker.compiling.loops import loop
+from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.tracking.gating import Pairs
+from tracker.tracking.instant import Instant
+from tracker.tracking.people import (
+    BORN_NS,
+    CALLED_NS,
+    CONFIRMED,
+    DETECTIONS,
+    EXISTENCE,
+    ID,
+    MISSING_S,
+    RAISED,
+    RAISED_SINCE_NS,
+    SEEN_NS,
+    People,
+)
+from tracker.tracking.settings import Settings
+from tracker.tracking.streaks import step_streak
 
 #: One newcomer in two is somebody (guess).
 BIRTH_EXISTENCE = 0.5
@@ -21,113 +34,152 @@ BIRTH_EXISTENCE = 0.5
 EXISTENCE_MIN = 0.05
 #: One frame makes nobody more than so much likelier: its errors have a common cause.
 LOG_EVIDENCE_MAX = float(np.log(100.0))
+#: With such a standard deviation somebody's place is unknown, as after a dozen seconds (guess).
+LOST_STD_M = 12.0
+#: A nanosecond, for the sum of many lapses.
+_LAPSE_S = 1e-9
 
 
-def believe(existence: FloatArray, log_evidence: FloatArray) -> FloatArray:
-    """Bayes' rule on existence, in odds.
+@loop
+def fade(
+    people: People,
+    covariance: FloatArray,
+    dt_s: float,
+    in_view: FloatArray,
+    delete_after_s: float,
+) -> None:
+    """Between frames people may leave; silence tells where they would be seen.
+
+    Whoever might be anywhere by now is as good as gone, seen or not.
 
     Args:
-        existence: Shape (N,).
-        log_evidence: Shape (N,): how much likelier this frame's measurement is with the person
-            than without, logarithm; 0 where nothing was measured. Less than 0 counts as 0: what is
-            assigned to somebody is no evidence against them.
+        people: N; changed in place.
+        covariance: Shape (1, N, 4, 4): over the modes, predicted.
+        dt_s: Since the last frame.
+        in_view: Shape (N,): chance that nothing kept them from being seen.
+        delete_after_s: Existence fades with that time constant.
     """
-    evidence = np.exp(np.minimum(np.maximum(log_evidence, 0.0), LOG_EVIDENCE_MAX))
-    odds = existence / (1.0 - existence) * evidence
-    return np.asarray(np.minimum(odds / (1.0 + odds), 1.0 - 1e-6))
+    for person in range(len(in_view)):
+        variance_m2 = (covariance[0, person, 0, 0] + covariance[0, person, 1, 1]) / 2.0
+        lost = min(variance_m2 / LOST_STD_M**2, 1.0)
+        lapse_s = dt_s * max(in_view[person], lost)
+        people.spans[EXISTENCE, person] *= np.exp(-lapse_s / delete_after_s)
+        people.spans[MISSING_S, person] += lapse_s
 
 
-def count_detections(
+@loop
+def believe(people: People, chosen: IntArray, pairs: Pairs, chance: FloatArray) -> None:
+    """Bayes' rule on existence, in odds, in place.
+
+    How much likelier a measurement is with the person than without counts for them; what is
+    assigned to somebody is never evidence against them.
+
+    Args:
+        people: N tracks.
+        chosen: Shape (N,): row of each one's pair, or -1.
+        pairs: P pairs.
+        chance: Shape (N,): of being detected.
+    """
+    existence = people.spans[EXISTENCE]
+    for person in range(len(chosen)):
+        evidence = 0.0
+        if chosen[person] >= 0:
+            evidence = pairs.log_odds[chosen[person]] + np.log(1.0 - chance[person])
+        odds = np.exp(min(max(evidence, 0.0), LOG_EVIDENCE_MAX))
+        odds *= existence[person] / (1.0 - existence[person])
+        existence[person] = min(odds / (1.0 + odds), 1.0 - 1e-6)
+
+
+@loop
+def count_person(
     people: People,
-    is_called: BoolArray,
-    is_seen: BoolArray,
-    stamp_ns: int,
-    config: Config,
-    **changes: Any,
-) -> People:
-    """Take note of one frame: streaks, M-of-N window, freshness, who is a customer.
+    person: int,
+    is_called: bool,
+    certainty: float,
+    instant: Instant,
+    settings: Settings,
+) -> None:
+    """Take note of one frame, in place: streaks, M-of-N window, freshness, who is a customer.
 
     A missed hand lowers nothing but the streak: people put their hands down and stay.
 
     Args:
-        people: Everybody, after the update.
-        is_called: Shape (N,): a raised hand was assigned.
-        is_seen: Shape (N,): any measurement was assigned.
-        stamp_ns: This frame's.
-        config: The tracking group.
-        changes: Other arrays of `People` that this frame has changed.
+        people: Everybody, with the existence after this frame.
+        person: Who counts.
+        is_called: A raised hand was assigned to them.
+        certainty: How probably the measurement that was assigned to them is theirs; 0 for none.
+        instant: When it is; where no image was looked at, only hands that were seen count.
+        settings: Of the tracker.
     """
-    existence = changes.get("existence", people.existence)
-    streaks = people.streaks.step(is_called, config.raise_streak, config.lower_streak)
-    rising = streaks.raised & ~people.streaks.raised
-    recent = np.empty_like(people.recent)
-    recent[:, 0], recent[:, 1:] = is_called, people.recent[:, :-1]
-    if config.confirmation == "m_of_n":
-        convinced = recent.sum(axis=1) >= config.confirm_detections
-    else:
-        convinced = is_called & (existence >= config.confirm_existence)
-    return people.replace(
-        streaks=streaks,
-        recent=recent,
-        detections=people.detections + is_called,
-        confirmed=people.confirmed | convinced,
-        raised_since_ns=np.where(rising, stamp_ns, people.raised_since_ns),
-        seen_ns=np.where(is_seen, stamp_ns, people.seen_ns),
-        called_ns=np.where(is_called, stamp_ns, people.called_ns),
-        missing_s=people.missing_s * ~is_seen,
-        **changes,
-    )
+    if instant.camera_looked or is_called:
+        _count_image(people, person, is_called, instant.stamp_ns, settings)
+    if certainty > 0.0:
+        people.counts[SEEN_NS, person] = instant.stamp_ns
+        # What may well be somebody else's does not end a silence.
+        people.spans[MISSING_S, person] *= 1.0 - certainty
+    if _is_convincing(people, person, is_called, settings):
+        people.flags[CONFIRMED, person] = True
 
 
-def fade(
-    people: People, belief: Belief, dt_s: float, visible: FloatArray, config: Config
-) -> People:
-    """Between frames people may leave, and only where they would be seen does silence tell.
-
-    Args:
-        people: Everybody.
-        belief: Where they are by now.
-        dt_s: Since the last frame.
-        visible: Shape (N,), in [0, 1], from `view.visibility`.
-        config: Existence fades with `delete_after_s` as its time constant.
-    """
-    lapse_s = dt_s * visible
-    return people.replace(
-        belief=belief,
-        existence=people.existence * np.exp(-lapse_s / config.delete_after_s),
-        missing_s=people.missing_s + lapse_s,
-    )
+@loop
+def _count_image(
+    people: People, person: int, is_called: bool, stamp_ns: int, settings: Settings
+) -> None:
+    """One image more in which somebody's hand was up, or not."""
+    counts, flags, recent = people.counts, people.flags, people.recent
+    for age in range(recent.shape[1] - 1, 0, -1):
+        recent[person, age] = recent[person, age - 1]
+    recent[person, 0] = is_called
+    was_raised = flags[RAISED, person]
+    step_streak(counts, flags, person, is_called, settings.raise_streak, settings.lower_streak)
+    if is_called:
+        counts[DETECTIONS, person] += 1
+        counts[CALLED_NS, person] = stamp_ns
+    if flags[RAISED, person] and not was_raised:
+        counts[RAISED_SINCE_NS, person] = stamp_ns
 
 
-def still_there(people: People, stamp_ns: int, config: Config) -> BoolArray:
-    """Shape (N,): whom to keep.
+@loop
+def _is_convincing(people: People, person: int, is_called: bool, settings: Settings) -> bool:
+    if settings.confirms_by_existence > 0.0:
+        return is_called and people.spans[EXISTENCE, person] >= settings.confirm_existence
+    detections = 0
+    for age in range(people.recent.shape[1]):
+        detections += people.recent[person, age]
+    return detections >= settings.confirm_detections
+
+
+@loop
+def is_still_there(people: People, person: int, stamp_ns: int, settings: Settings) -> bool:
+    """Whether to keep somebody.
 
     A tentative track goes as soon as it cannot be confirmed within its window any more; a
     confirmed one once nothing has shown it for `delete_after_s`, sooner while it has few
     detections, or once no hand has been up for `forget_after_s`. A bystander is remembered for as
     long as it has been seen before, and no longer than a customer.
     """
-    patience_s = config.delete_after_s * np.minimum(
-        people.detections / config.mature_detections, 1.0
-    )
-    # A nanosecond for the sum of the lapses.
-    alive = (people.missing_s <= patience_s + 1e-9) & (
-        people.called_ns >= stamp_ns - round(config.forget_after_s * 1e9)
-    )
-    known_s = (people.seen_ns - people.born_ns) / 1e9
-    remembered = people.missing_s <= np.minimum(known_s, config.delete_after_s) + 1e-9
-    alive = np.where(people.is_customer, alive, remembered)
-    if (people.confirmed | ~people.is_customer).all():
-        return alive
-    if config.confirmation == "m_of_n":
-        hopeful = _may_be_confirmed(people.recent, config)
-    else:
-        hopeful = alive & (people.existence >= EXISTENCE_MIN)
-    return np.where(people.confirmed | ~people.is_customer, alive, hopeful)
+    counts, missing_s = people.counts, people.spans[MISSING_S, person]
+    if counts[ID, person] <= 0:
+        known_s = (counts[SEEN_NS, person] - counts[BORN_NS, person]) / 1e9
+        return missing_s <= min(known_s, settings.delete_after_s) + _LAPSE_S
+    if not people.flags[CONFIRMED, person] and settings.confirms_by_existence == 0.0:
+        return _may_be_confirmed(people.recent, person, settings.confirm_detections)
+    maturity = min(counts[DETECTIONS, person] / settings.mature_detections, 1.0)
+    is_alive = missing_s <= settings.delete_after_s * maturity + _LAPSE_S
+    unheard_s = (stamp_ns - counts[CALLED_NS, person]) / 1e9
+    is_alive = is_alive and unheard_s <= settings.forget_after_s + _LAPSE_S
+    is_hopeful = people.spans[EXISTENCE, person] >= EXISTENCE_MIN
+    return is_alive and (people.flags[CONFIRMED, person] or is_hopeful)
 
 
-def _may_be_confirmed(recent: BoolArray, config: Config) -> BoolArray:
-    window = config.confirm_window
-    fresh = np.arange(1, window)  # if the next so many frames all were detections ...
-    kept = np.cumsum(recent, axis=1)[:, window - 1 - fresh]  # ... these would still count
-    return np.asarray(((kept >= 1) & (kept + fresh >= config.confirm_detections)).any(axis=1))
+@loop
+def _may_be_confirmed(recent: BoolArray, person: int, needed: float) -> bool:
+    """Whether raised hands in all images to come would still make a customer."""
+    window = recent.shape[1]
+    for fresh in range(1, window):
+        kept = 0
+        for age in range(window - fresh):
+            kept += recent[person, age]
+        if kept >= 1 and kept + fresh >= needed:
+            return True
+    return False

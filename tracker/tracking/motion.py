@@ -7,55 +7,73 @@ Both are exact over any interval: two half steps equal a whole one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
+from tracker.compiling.loops import loop, step
 from tracker.config import Config
 from tracker.containers import FloatArray
+from tracker.tracking.modes import mix
+from tracker.tracking.people import People
+from tracker.tracking.settings import Settings
 
 #: How fast the sway of somebody who stands is forgotten (guess).
 STAND_MEMORY_S = 0.5
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Motion:
-    """What one interval does to each of K modes.
+class Motion(NamedTuple):
+    """What an interval does to somebody in one mode, both axes alike.
 
     Attributes:
-        transition: Shape (K, 4, 4): takes x, y, vx, vy over the interval.
-        noise: Shape (K, 4, 4): covariance that the interval adds.
-        switching: Shape (K, K): probability of mode j after the interval, given mode i before.
+        reach_s: A place moves by so many times the speed.
+        rest: So much of the speed stays.
+        position: Variance that the interval adds to a place ...
+        mixed: ... its covariance with the speed ...
+        velocity: ... and the variance of the speed.
     """
 
-    transition: FloatArray
-    noise: FloatArray
-    switching: FloatArray
-
-    @property
-    def modes(self) -> int:
-        """K."""
-        return len(self.transition)
+    reach_s: float
+    rest: float
+    position: float
+    mixed: float
+    velocity: float
 
 
-def motion_over(dt_s: float, config: Config) -> Motion:
-    """The configured motion over an interval: modes (walk,) or (walk, stand)."""
-    return _motion_over(
-        dt_s,
-        config.motion == "imm",
-        config.acceleration_density,
-        config.stand_speed_std_mps,
-        config.stand_duration_s,
-        config.walk_duration_s,
+@step
+def walk(dt_s: float, acceleration_density: float) -> Motion:
+    """Nearly constant velocity: white-noise acceleration of a density in m^2/s^3."""
+    density = acceleration_density
+    return Motion(dt_s, 1.0, density * dt_s**3 / 3, density * dt_s**2 / 2, density * dt_s)
+
+
+@step
+def stand(dt_s: float, speed_std_mps: float) -> Motion:
+    """Swaying: the speed fades, and its variance stays bounded."""
+    memory_s, variance = STAND_MEMORY_S, speed_std_mps**2
+    lapse = -np.expm1(-dt_s / memory_s)
+    # 2 t - 3 + 4 exp(-t) - exp(-2 t) without its cancellation, where t is short.
+    position = 2.0 * (dt_s / memory_s - lapse) - lapse**2
+    if dt_s < 1e-3 * memory_s:
+        position = 2.0 / 3.0 * (dt_s / memory_s) ** 3
+    return Motion(
+        memory_s * lapse,
+        1.0 - lapse,
+        variance * memory_s**2 * position,
+        variance * memory_s * lapse**2,
+        variance * lapse * (2.0 - lapse),
     )
 
 
-def transition(dt_s: float) -> FloatArray:
-    """Shape (4, 4): takes x, y, vx, vy over an interval at constant velocity."""
-    matrix = np.eye(4)
-    matrix[0, 2] = matrix[1, 3] = dt_s
-    return matrix
+@step
+def switching(dt_s: float, walk_duration_s: float, stand_duration_s: float) -> tuple[float, float]:
+    """Probabilities that somebody who walks stands after an interval, and the other way.
+
+    A Markov chain in continuous time, so that this too depends on the interval alone.
+    """
+    stop, start = 1.0 / walk_duration_s, 1.0 / stand_duration_s
+    share = -np.expm1(-(stop + start) * dt_s) / (stop + start)
+    return stop * share, start * share
 
 
 def modes_of(config: Config) -> int:
@@ -63,103 +81,76 @@ def modes_of(config: Config) -> int:
     return 2 if config.motion == "imm" else 1
 
 
-def process_noise(dt_s: float, acceleration_density: float) -> FloatArray:
-    """Covariance that white-noise acceleration adds over an interval, shape (4, 4).
-
-    The same matrix as FilterPy's `Q_continuous_white_noise(dim=2, block_size=2,
-    order_by_dim=False)`, which the tests hold it against; two half intervals add up to the whole.
+@loop
+def predict(people: People, dt_s: float, settings: Settings, predicted: People) -> None:
+    """Mix the modes by how people change between them, then carry each over the interval.
 
     Args:
+        people: After the last frame.
         dt_s: The interval, from stamps.
-        acceleration_density: Power spectral density, m^2/s^3.
+        settings: Of the tracker.
+        predicted: Its weight, mean and covariance are written.
     """
-    return acceleration_density * _both_axes(dt_s**3 / 3, dt_s**2 / 2, dt_s)
+    walks = walk(dt_s, settings.acceleration_density)
+    if len(people.weight) == 1:
+        for person in range(people.weight.shape[1]):
+            predicted.weight[0, person] = people.weight[0, person]
+            carry(
+                people.mean, people.covariance, 0, person, walks,
+                predicted.mean, predicted.covariance,
+            )  # fmt: skip
+        return
+    stands = stand(dt_s, settings.stand_speed_std_mps)
+    stops, starts = switching(dt_s, settings.walk_duration_s, settings.stand_duration_s)
+    for to in range(2):
+        from_walk, from_stand = (1.0 - stops, starts) if to == 0 else (stops, 1.0 - starts)
+        for person in range(people.weight.shape[1]):
+            first = from_walk * people.weight[0, person]
+            second = from_stand * people.weight[1, person]
+            total = max(first + second, 1e-300)
+            predicted.weight[to, person] = first + second
+            mix(
+                first / total, second / total, people.mean, people.covariance, person,
+                predicted.mean[to], predicted.covariance[to],
+            )  # fmt: skip
+            carry(
+                predicted.mean, predicted.covariance, to, person, walks if to == 0 else stands,
+                predicted.mean, predicted.covariance,
+            )  # fmt: skip
 
 
-def stand_transition(dt_s: float, memory_s: float = STAND_MEMORY_S) -> FloatArray:
-    """Shape (4, 4): the speed fades, and the position moves by what is left of it."""
-    fade = np.exp(-dt_s / memory_s)
-    matrix = np.diag([1.0, 1.0, fade, fade])
-    matrix[0, 2] = matrix[1, 3] = memory_s * (1.0 - fade)
-    return matrix
-
-
-def stand_noise(dt_s: float, speed_std_mps: float, memory_s: float = STAND_MEMORY_S) -> FloatArray:
-    """Covariance that swaying adds over an interval, shape (4, 4); the speed's stays bounded."""
-    lapse = -np.expm1(-dt_s / memory_s)
-    # 2 t - 3 + 4 exp(-t) - exp(-2 t) without its cancellation, where t is short.
-    position = 2.0 * (dt_s / memory_s - lapse) - lapse**2
-    if dt_s < 1e-3 * memory_s:
-        position = 2.0 / 3.0 * (dt_s / memory_s) ** 3
-    return speed_std_mps**2 * _both_axes(
-        memory_s**2 * position, memory_s * lapse**2, lapse * (2.0 - lapse)
-    )
-
-
-def predict(
-    mean: FloatArray, covariance: FloatArray, dt_s: float, acceleration_density: float
-) -> tuple[FloatArray, FloatArray]:
-    """Carry every track over an interval at nearly constant velocity.
-
-    Args:
-        mean: Shape (..., N, 4): x_m, y_m, vx_mps, vy_mps.
-        covariance: Shape (..., N, 4, 4).
-        dt_s: The interval, from stamps.
-        acceleration_density: Process noise, m^2/s^3.
-
-    Returns:
-        Prior mean and covariance, of the same shapes.
-    """
-    noise = process_noise(dt_s, acceleration_density)
-    walk = Motion(transition(dt_s)[None], noise[None], np.eye(1))
-    mean, covariance = carry(mean[..., None, :, :], covariance[..., None, :, :, :], walk)
-    return mean[..., 0, :, :], covariance[..., 0, :, :, :]
-
-
+@loop
 def carry(
-    mean: FloatArray, covariance: FloatArray, motion: Motion
-) -> tuple[FloatArray, FloatArray]:
-    """F x and F P F' + Q of every mode.
-
-    One small product for each track, so that no last bit depends on how many there are.
+    mean: FloatArray,
+    covariance: FloatArray,
+    mode: int,
+    person: int,
+    motion: Motion,
+    new_mean: FloatArray,
+    new: FloatArray,
+) -> None:
+    """F x and F P F' + Q of one person in one mode of motion.
 
     Args:
-        mean: Shape (..., K, N, 4).
-        covariance: Shape (..., K, N, 4, 4).
-        motion: K modes.
+        mean: Shape (K, N, 4).
+        covariance: Shape (K, N, 4, 4).
+        mode: Row of the mode.
+        person: Row of the person.
+        motion: In that mode.
+        new_mean: Where the mean is written; may be `mean`.
+        new: Where the covariance is written; may be `covariance`.
     """
-    step = motion.transition[:, None]
-    carried = (step @ mean[..., None])[..., 0]
-    spread = step @ covariance @ np.swapaxes(step, -1, -2)
-    spread += motion.noise[:, None]
-    return carried, spread
-
-
-def _both_axes(position: float, mixed: float, velocity: float) -> FloatArray:
-    matrix = np.zeros((4, 4))
-    matrix[0, 0] = matrix[1, 1] = position
-    matrix[0, 2] = matrix[2, 0] = matrix[1, 3] = matrix[3, 1] = mixed
-    matrix[2, 2] = matrix[3, 3] = velocity
-    return matrix
-
-
-@lru_cache(maxsize=32)  # most intervals are the camera's period
-def _motion_over(
-    dt_s: float,
-    stands: bool,
-    acceleration_density: float,
-    stand_speed_std_mps: float,
-    stand_duration_s: float,
-    walk_duration_s: float,
-) -> Motion:
-    walk, walk_noise = transition(dt_s), process_noise(dt_s, acceleration_density)
-    if not stands:
-        return Motion(walk[None], walk_noise[None], np.eye(1))
-    # A Markov chain in continuous time, so that the switching too depends on the interval alone.
-    stop, start = 1.0 / walk_duration_s, 1.0 / stand_duration_s
-    share = -np.expm1(-(stop + start) * dt_s) / (stop + start)
-    return Motion(
-        np.stack([walk, stand_transition(dt_s)]),
-        np.stack([walk_noise, stand_noise(dt_s, stand_speed_std_mps)]),
-        np.array([[1.0 - stop * share, stop * share], [start * share, 1.0 - start * share]]),
-    )
+    reach_s, rest, position, mixed, velocity = motion
+    for i in range(2):
+        speed = mean[mode, person, i + 2]
+        new_mean[mode, person, i] = mean[mode, person, i] + reach_s * speed
+        new_mean[mode, person, i + 2] = rest * speed
+        for j in range(2):
+            to, at, is_same = i + 2, j + 2, 1.0 if i == j else 0.0
+            place, speed = covariance[mode, person, i, j], covariance[mode, person, to, at]
+            right, below = covariance[mode, person, i, at], covariance[mode, person, to, j]
+            place += reach_s * (right + below + reach_s * speed)
+            new[mode, person, i, j] = place + is_same * position
+            new[mode, person, i, at] = rest * (right + reach_s * speed) + is_same * mixed
+            new[mode, person, to, j] = rest * (below + reach_s * speed) + is_same * mixed
+            new[mode, person, to, at] = rest * rest * speed + is_same * velocity

@@ -11,43 +11,40 @@ nonlinear systems using the multivariate Student-t distribution", IEEE MLSP 2012
 
 from __future__ import annotations
 
-import numpy as np
-
-from tracker.containers import FloatArray
+from tracker.compiling.loops import loop
 
 #: Rounds after which w changes by less than the noise of its own estimate.
 ROUNDS = 4
 
 
-def outlier_noise(
-    spread: FloatArray, innovation: FloatArray, noise: FloatArray, dof: float
-) -> FloatArray:
-    """Noise with the range's variance raised where the range fits badly.
+@loop
+def outlier_variance(
+    innovation: tuple[float, float],
+    own: tuple[float, float, float],
+    noise: tuple[float, float, float],
+    dof: float,
+) -> float:
+    """The range's variance, raised where the range fits badly.
 
-    All is done in the two numbers of the measurement; the state is not touched.
+    All is done in the two numbers of the measurement; the state is not touched, and the
+    covariance of bearing and range is kept.
 
     Args:
-        spread: Shape (..., 2, 2): H P H', what the track itself contributes to the innovation.
-        innovation: Shape (..., 2); the second is the range's.
-        noise: Shape (..., 2, 2).
+        innovation: The second number is the range's.
+        own: H P H' (00, 01, 11), what the track itself contributes to the innovation.
+        noise: R (00, 01, 11).
         dof: Degrees of freedom nu; large ones make it Gaussian.
-
-    Returns:
-        Noise of the same shape; the covariance of bearing and range is kept.
     """
-    a00, a01, a11 = spread[..., 0, 0], spread[..., 0, 1], spread[..., 1, 1]
-    r00, r01, r11 = noise[..., 0, 0], noise[..., 0, 1], noise[..., 1, 1]
+    r00, r01, r11 = noise
     # Given the bearing, the range is one number y with prior variance a and noise r.
-    share = (a01 + r01) / (a00 + r00)
-    y = innovation[..., 1] - share * innovation[..., 0]
+    share = (own[1] + r01) / (own[0] + r00)
+    y = innovation[1] - share * innovation[0]
     r = r11 - r01 * r01 / r00
-    a = np.maximum(a11 + r11 - share * (a01 + r01) - r, 0.0)
-    weight = np.ones(y.shape)
+    a = max(own[2] + r11 - share * (own[1] + r01) - r, 0.0)
+    weight = 1.0
     for _ in range(ROUNDS):
         scaled = r / weight
         posterior = scaled / (a + scaled)  # the share of the innovation that stays
         weight = (dof + 1.0) / (dof + (posterior * y * y * posterior + a * posterior) / r)
-        weight = np.minimum(weight, 1.0)  # more certain than stated is no range
-    raised = np.array(noise)
-    raised[..., 1, 1] = r11 + r * (1.0 / weight - 1.0)
-    return raised
+        weight = min(weight, 1.0)  # more certain than stated is no range
+    return r11 + r * (1.0 / weight - 1.0)

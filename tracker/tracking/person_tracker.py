@@ -2,59 +2,81 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache, partial
-from typing import TYPE_CHECKING
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tracker.compiling.machine import Machine
 from tracker.config import Config
-from tracker.containers import FloatArray, Measurements, Tracks, check_stamp
-from tracker.tracking.frame import track
-from tracker.tracking.innovations import Watch
-from tracker.tracking.modes import Belief
+from tracker.containers import FloatArray, Measurements, Tracks, View, check_stamp
+from tracker.containers.arrays import sealed
+from tracker.errors import ShapeError
+from tracker.selection.selector import Selector
+from tracker.tracking.claims import Claims, claims_of
+from tracker.tracking.doors import Associator, MotionModel, association_by, prediction_by
+from tracker.tracking.frame import interpreted, make_frame, track_frame
+from tracker.tracking.instant import Instant
+from tracker.tracking.machine_frame import machine
+from tracker.tracking.modes import merge_modes
 from tracker.tracking.motion import modes_of
-from tracker.tracking.people import People
-from tracker.tracking.selection import Selector
-from tracker.tracking.streaks import Streaks
-from tracker.tracking.view import View
+from tracker.tracking.multilateration import with_positions
+from tracker.tracking.people import DETECTED, ID, MISSED, RAISED, room_for, with_room
+from tracker.tracking.reconfiguration import under
+from tracker.tracking.renewal import Frame
+from tracker.tracking.result import customers_of, tracks_of
+from tracker.tracking.settings import record_of, settings_of
+from tracker.tracking.trace import NO_TRACE, Trace, Watch, Watched
+from tracker.tracking.view import view_numbers
 
-if TYPE_CHECKING:
-    from tracker.tracking.compiled.frame import CompiledTrack
+NO_LIKENESS = sealed(np.zeros((0, 0)))
 
 
 class PersonTracker:
     """Kalman-filtered customers, from raised hands and the people in the scan.
 
     Raised hands create customers and feed their streaks; everything else only sustains and refines
-    those who are there. Bystanders, whom only the scan shows, are followed within: what is known
+    those who are there. Bystanders, whom only the scan shows, are followed as well: what is known
     to be somebody else's is not taken for a customer's. Identities count from 1 and are never
     reused by one tracker.
 
     Args:
         config: The tracking and selection groups.
-        watch: Told of every round of association, before it counts; see `tracking.innovations`.
-        compiled: Let numba (the extra `fast`) do a frame's work, if it is installed and nobody
-            watches; the numbers are the same up to rounding.
+        motion: A motion model of your own, (means, covariances, seconds) -> (means, covariances),
+            of shapes (N, 4) and (N, 4, 4), instead of `motion` in the configuration.
+        associate: An association of your own: log-odds of every track and measurement, shape
+            (N, M), -inf outside the gate -> probabilities of the same shape, instead of
+            `association` in the configuration.
+        watch: Told of every frame and what happened inside; see `tracking.trace`.
+        compiled: Let numba do a frame's work, as soon as it is compiled; the numbers are the same
+            up to rounding. With a function of your own Python does it.
     """
 
     def __init__(
         self,
         config: Config | None = None,
         *,
+        motion: MotionModel | None = None,
+        associate: Associator | None = None,
         watch: Watch | None = None,
         compiled: bool = True,
     ) -> None:
-        self._config = config or Config()
-        self._track: Callable[..., tuple[People, int]] = partial(track, watch=watch)
-        if compiled and watch is None:
-            compiled_track = _compiled_track()
-            self._track = compiled_track() if compiled_track is not None else track
-        self._next_id = 1
+        self._motion = motion
+        self._frame = interpreted(track_frame)
+        self._machine: Machine | None = None
+        if motion is not None or associate is not None:
+            frame = make_frame(prediction_by(motion), association_by(associate))
+            self._frame = interpreted(frame)
+        elif compiled:
+            self._machine = machine()
+            if self._machine is not None:
+                self._machine.start()
+        self._watch = watch
+        self._next_id, self._next_bystander = 1, -1
         self._stamp_ns: int | None = None
-        self._people = self._nobody()
-        self.selector = Selector(self._config)
+        self.selector = Selector(config or Config())
+        self._set_config(config or Config())
+        self._now = self._nobody()
 
     @property
     def config(self) -> Config:
@@ -63,35 +85,36 @@ class PersonTracker:
 
     @config.setter
     def config(self, config: Config) -> None:
-        people = self._people
-        if config.confirm_window != self._config.confirm_window:
-            held = people.recent[:, : config.confirm_window]
-            recent = np.zeros((len(held), config.confirm_window), dtype=bool)
-            recent[:, : held.shape[1]] = held
-            people = people.replace(recent=recent)
-        belief = people.belief.with_modes(modes_of(config), config.stand_speed_std_mps)
-        self._people = people.replace(belief=belief)
-        self._config = self.selector.config = config
+        self._set_config(config)
+        self._now = under(self._now, self._config)
 
     @property
     def has_tracks(self) -> bool:
         """Whether anybody is tracked now."""
-        return bool(self._people.is_customer.any())
+        return bool((self._now.people.counts[ID] > 0).any())
+
+    @property
+    def people(self) -> Tracks:
+        """Everybody at the last step, bystanders too, whose identities are below 0."""
+        return tracks_of(self._now, self._stamp_ns or 0, None)
 
     @property
     def positions_m(self) -> FloatArray:
         """Shape (N, 2): where everybody was at the last step, in the fixed frame."""
-        return self._people.belief.merged()[0][:, :2]
+        return self._now.mean[0, :, :2]
 
     def reset(self) -> None:
         """Forget everybody; identities go on counting."""
-        self._people = self._nobody()
+        self._now = self._nobody()
         self._stamp_ns = None
         self.selector.reset()
 
     def lower_hands(self) -> None:
         """Let every hand count as down until it is seen up again; identities stay."""
-        self._people = self._people.replace(streaks=Streaks.begin(len(self._people)))
+        people = with_room(self._now.people, 0)  # tracks that were handed out stay as they were
+        people.counts[[DETECTED, MISSED]] = 0
+        people.flags[RAISED] = False
+        self._now = self._now._replace(people=people)
 
     def doubt(self, moved: FloatArray, over_s: float) -> None:
         """Widen what is believed of everybody by a motion that they may be off by.
@@ -101,13 +124,15 @@ class PersonTracker:
                 camera's while it was supposed to stand still.
             over_s: In which time.
         """
-        belief = self._people.belief
+        people = with_room(self._now.people, 0)
         cos, sin = np.cos(moved[2]), np.sin(moved[2])
-        here_m = belief.mean[..., :2]
+        here_m = people.mean[..., :2]
         off_m = here_m @ np.array([[cos, sin], [-sin, cos]]) + moved[:2] - here_m
         off = np.concatenate([off_m, off_m / max(over_s, 1e-3)], axis=-1)
-        wider = belief.covariance + off[..., :, None] * off[..., None, :]
-        self._people = self._people.replace(belief=Belief(belief.weight, belief.mean, wider))
+        people.covariance[:] += off[..., :, None] * off[..., None, :]
+        mean, covariance = self._now.mean.copy(), self._now.covariance.copy()
+        merge_modes(*people[:3], mean[0], covariance[0])
+        self._now = self._now._replace(people=people, mean=mean, covariance=covariance)
 
     def step(
         self,
@@ -117,11 +142,14 @@ class PersonTracker:
         *,
         view: View | None = None,
         scan_view: View | None = None,
+        camera_looked: bool = True,
+        likeness: ArrayLike | None = None,
     ) -> Tracks:
         """Take in everything that was measured at one instant.
 
         A stamp before the last one means that the clock has jumped: everybody is forgotten first.
-        Measurements that are not finite, or whose covariance is none, are passed over.
+        Each sensor's measurements count one after the other: nobody has two of one sensor, but
+        for those that name the same `person`.
 
         Args:
             stamp_ns: Sensor time of the measurements.
@@ -129,12 +157,18 @@ class PersonTracker:
             robot_xy_m: Shape (2,): where the robot is, for `selection: nearest`.
             view: Where the camera could see hands; None means everywhere.
             scan_view: Where the scan could show people; None where there is no scan.
+            camera_looked: False for a step of another sensor between two images: nobody's hand
+                was missed then.
+            likeness: Shape (N, M): how much likelier it is that measurement j is of customer i of
+                the last step's `Tracks` than of anybody else, by what you know of both, as the
+                logarithm of a ratio; NaN or 0 where nothing is known.
 
         Returns:
-            Everybody, tentative ones included (`confirmed` tells), with the selected customer.
+            Every customer, tentative ones included (`confirmed` tells), with the selected one.
 
         Raises:
-            ClockError: The stamp is negative.
+            ClockError: The stamp is negative, or beyond 64 bits.
+            ShapeError: `likeness` has another shape, or is infinite.
         """
         check_stamp(stamp_ns)
         if self._stamp_ns is not None and stamp_ns < self._stamp_ns:
@@ -142,31 +176,67 @@ class PersonTracker:
         dt_s = 0.0 if self._stamp_ns is None else (stamp_ns - self._stamp_ns) / 1e9
         # Beyond the longest memory everybody is gone anyway; a day's gap must not overflow.
         dt_s = min(dt_s, 10.0 * max(self._config.delete_after_s, self._config.forget_after_s))
-        people, self._next_id = self._track(
-            self._people,
-            measurements,
-            self._next_id,
-            dt_s,
+        told = self._likeness(likeness, len(measurements))
+        if likeness is None:  # whose columns are the measurements as they came
+            measurements = with_positions(measurements)
+        claims = claims_of(measurements, dt_s, self._config)
+        instant = Instant(
             stamp_ns,
-            self._config,
-            view,
-            scan_view,
+            dt_s,
+            self._next_id,
+            self._next_bystander,
+            view_numbers(view),
+            view_numbers(scan_view),
+            scan_view is not None,
+            camera_looked,
         )
-        self._people, self._stamp_ns = people, stamp_ns
-        robot_xy = np.asarray(robot_xy_m, dtype=np.float64)
-        customers = people.customers()
-        return customers.as_tracks(stamp_ns, self.selector.choose(customers, stamp_ns, robot_xy))
+        self._run(claims, instant, told)
+        self._stamp_ns = stamp_ns
+        tracks = tracks_of(self._now, stamp_ns, customers_of(self._now))
+        chosen = self.selector.choose(tracks, stamp_ns, np.asarray(robot_xy_m, dtype=np.float64))
+        tracks.__dict__["selected_id"] = chosen
+        return tracks
 
-    def _nobody(self) -> People:
-        return People.nobody(self._config.confirm_window, modes_of(self._config))
+    def _run(self, claims: Claims, instant: Instant, likeness: FloatArray) -> None:
+        people = self._now.people
+        trace = (
+            NO_TRACE if self._watch is None else Trace.room(len(claims.kind), *people.weight.shape)
+        )
+        frame, settings = self._frame, cast(Any, self._settings)
+        if self._machine is not None and self._machine.code is not None:
+            frame, settings = self._machine.code, self._record
+        self._now = frame(people, claims, instant, likeness, settings, trace)
+        self._next_id, self._next_bystander = self._now.next_id, self._now.next_bystander
+        if self._watch is not None:
+            self._watch(Watched(instant.stamp_ns, people, claims, trace, self._config))
 
+    def _likeness(self, likeness: ArrayLike | None, measured: int) -> FloatArray:
+        """For the loops: a row for everybody, bystanders too."""
+        if likeness is None:
+            return NO_LIKENESS
+        customers = customers_of(self._now)
+        rows = slice(None) if customers is None else customers
+        everybody = np.zeros((len(self.positions_m), measured))
+        shape = everybody[rows].shape
+        told = np.nan_to_num(np.asarray(likeness, dtype=np.float64), nan=0.0, posinf=np.inf)
+        if told.shape != shape or not np.isfinite(told).all():
+            raise ShapeError(
+                f"`likeness` has shape {told.shape}, or is infinite; needed are finite numbers of "
+                f"shape {shape}: the customers of the last step, and the measurements."
+            )
+        everybody[rows] = told
+        return sealed(everybody)
 
-@cache
-def _compiled_track() -> type[CompiledTrack] | None:
-    try:
-        from tracker.tracking.compiled.frame import CompiledTrack
-    except ModuleNotFoundError as error:
-        if error.name != "numba":
-            raise
-        return None
-    return CompiledTrack
+    def _set_config(self, config: Config) -> None:
+        if self._motion is not None:  # which has one mode
+            config = config.model_copy(update={"motion": "cv"})
+        self._config = self.selector.config = config
+        self._settings = settings_of(config)
+        self._record = record_of(self._settings)
+
+    def _nobody(self) -> Frame:
+        people = room_for(modes_of(self._config), 0, self._config.confirm_window)
+        return Frame(
+            people, np.zeros((1, 0, 4)), np.zeros((1, 0, 4, 4)),
+            self._next_id, self._next_bystander, 0,
+        )  # fmt: skip

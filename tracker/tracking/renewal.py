@@ -2,70 +2,128 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from tracker.config import Config
-from tracker.containers import FloatArray, Measurements
-from tracker.tracking.admission import is_close
-from tracker.tracking.filter import initial_state
-from tracker.tracking.life_cycle import BIRTH_EXISTENCE, count_detections, still_there
-from tracker.tracking.modes import Belief
-from tracker.tracking.motion import modes_of
-from tracker.tracking.observation import Observed
-from tracker.tracking.people import People
-from tracker.tracking.twins import merge_twins
+from tracker.compiling.loops import loop, maker
+from tracker.containers import FloatArray
+from tracker.tracking.claims import Claims
+from tracker.tracking.duplicates import merge_duplicates
+from tracker.tracking.found import NOBODY, Found
+from tracker.tracking.instant import Instant
+from tracker.tracking.life_cycle import count_person, is_still_there
+from tracker.tracking.modes import merge_modes
+from tracker.tracking.newcomers import let_in
+from tracker.tracking.people import (
+    AGE_S,
+    BORN_NS,
+    HAND,
+    ID,
+    SEEN_NS,
+    TAG,
+    UNSEEN_S,
+    People,
+    kept,
+    with_room,
+)
+from tracker.tracking.settings import Settings
 
 
-def renew(seen: Observed, next_id: int, stamp_ns: int, config: Config) -> tuple[People, int]:
-    """Let people in, bring twins together, and let those go who are not there any more.
+class Frame(NamedTuple):
+    """Everybody after one instant.
+
+    Attributes:
+        people: N people.
+        mean: Shape (1, N, 4), over the modes of motion.
+        covariance: Shape (1, N, 4, 4).
+        next_id: Of the next customer.
+        next_bystander: Of the next bystander, below 0.
+        refused: Measurements that are nobody's and cannot show anybody new.
+    """
+
+    people: People
+    mean: FloatArray
+    covariance: FloatArray
+    next_id: int
+    next_bystander: int
+    refused: int
+
+
+@maker
+def renew(
+    people: People, claims: Claims, found: Found, instant: Instant, settings: Settings
+) -> Frame:
+    """Count this frame, let people in, join duplicates, let those go who are not there any more.
 
     Args:
-        seen: Everybody after this instant, and the measurements that are nobody's.
-        next_id: The next customer's identity.
-        stamp_ns: This frame's.
-        config: The tracking group.
-
-    Returns:
-        Everybody from now on, and the identity of the next customer after them.
+        people: N people, corrected; changed in place.
+        claims: M claims.
+        found: Who was found by what.
+        instant: When it is.
+        settings: Of the tracker.
     """
-    people, is_seen = seen.people, seen.is_seen
-    called = seen.is_called & ~people.is_customer
-    if called.any():  # bystanders who raise a hand become customers
-        people = people.replace(id=np.where(called, next_id - 1 + np.cumsum(called), people.id))
-        next_id += int(np.count_nonzero(called))
-    place = people.belief.merged()[0][:, :2]
-    if len(seen.others):
-        # A second cluster beside somebody seen is their other leg; a lowered hand alone is nobody.
-        bystanders, claims = _begin(seen.others, place[is_seen], stamp_ns, config)
-        bystanders = bystanders[claims.hand < 0]
-        people = people.append(bystanders)
-        is_seen = np.append(is_seen, np.ones(len(bystanders), dtype=bool))
-    people = merge_twins(people, is_seen, config)
-    if len(seen.raised):
-        # The second hand of somebody whose first hand has just been counted is nobody new.
-        newcomers, claims = _begin(seen.raised, place[seen.is_called], stamp_ns, config)
-        ids, everyone = next_id + np.arange(len(newcomers)), np.ones(len(newcomers), dtype=bool)
-        newcomers = count_detections(
-            newcomers.replace(id=ids), everyone, everyone, stamp_ns, config, hand=claims.hand
-        )
-        people, next_id = people.append(newcomers), next_id + len(newcomers)
-    keep = still_there(people, stamp_ns, config)
-    return (people if keep.all() else people[keep]), next_id
-
-
-def _begin(
-    claims: Measurements, seen_xy_m: FloatArray, stamp_ns: int, config: Config
-) -> tuple[People, Measurements]:
-    """The people behind claims, apart from those seen already, and their claims."""
-    mean, covariance = initial_state(
-        claims,
-        unknown_range_m=config.unknown_range_m,
-        unknown_range_std_m=config.unknown_range_std_m,
-        speed_std_mps=config.initial_speed_std_mps,
+    known, distance_m = len(found.hand), settings.same_person_distance_m
+    next_id = _count_known(people, claims, found, instant, settings)
+    mean, covariance = np.empty((1, known, 4)), np.empty((1, known, 4, 4))
+    merge_modes(people.weight, people.mean, people.covariance, mean[0], covariance[0])
+    free = 0
+    for row in range(len(found.owner)):
+        free += found.owner[row] == NOBODY
+    room = with_room(people, free) if free > 0 else people
+    bystander = instant.next_bystander
+    newcomers, refused = let_in(
+        room, known, False, bystander, mean, claims, found, instant, settings
     )
-    new = ~is_close(mean[:, :2], seen_xy_m, config.same_person_distance_m).any(axis=1)
-    belief = Belief.begin(mean[new], covariance[new], modes_of(config), config.stand_speed_std_mps)
-    count = int(np.count_nonzero(new))
-    ids, existence = np.zeros(count, dtype=np.int64), np.full(count, BIRTH_EXISTENCE)
-    people = People.begin(ids, belief, stamp_ns, config.confirm_window, existence)
-    return people, claims[new]
+    certainty, keep = np.empty(newcomers), np.empty(known + free, np.bool_)
+    for person in range(newcomers):
+        certainty[person] = found.certainty[person] if person < known else 1.0
+    for person in range(len(keep)):
+        keep[person] = True
+    merge_duplicates(room, mean, certainty, keep, distance_m)
+    count, refused_hands = let_in(
+        room, newcomers, True, next_id, mean, claims, found, instant, settings
+    )
+    for person in range(newcomers, count):
+        count_person(room, person, True, 1.0, instant, settings)
+    stay = 0
+    for person in range(len(keep)):
+        keep[person] = (
+            keep[person]
+            and person < count
+            and is_still_there(room, person, instant.stamp_ns, settings)
+        )
+        stay += keep[person]
+    if stay < len(keep):
+        room = kept(room, keep, stay)
+    for person in range(stay):
+        age_ns = instant.stamp_ns - room.counts[BORN_NS, person]
+        unseen_ns = instant.stamp_ns - room.counts[SEEN_NS, person]
+        room.spans[AGE_S, person], room.spans[UNSEEN_S, person] = age_ns / 1e9, unseen_ns / 1e9
+    mean, covariance = np.empty((1, stay, 4)), np.empty((1, stay, 4, 4))
+    merge_modes(room.weight, room.mean, room.covariance, mean[0], covariance[0])
+    next_id, bystander = next_id + count - newcomers, bystander - (newcomers - known)
+    return Frame(room, mean, covariance, next_id, bystander, refused + refused_hands)
+
+
+@loop
+def _count_known(
+    people: People, claims: Claims, found: Found, instant: Instant, settings: Settings
+) -> int:
+    """Note what this frame told of everybody known; gives the next customer's identity.
+
+    Bystanders who raise a hand become customers.
+    """
+    next_id = instant.next_id
+    for row in range(len(found.owner)):
+        if found.owner[row] >= 0 and claims.tag[row] >= 0:
+            people.counts[TAG, found.owner[row]] = claims.tag[row]
+    for person in range(len(found.hand)):
+        people.counts[HAND, person] = found.hand[person]
+        if found.is_called[person] and people.counts[ID, person] <= 0:
+            people.counts[ID, person] = next_id
+            next_id += 1
+        count_person(
+            people, person, found.is_called[person], found.certainty[person], instant, settings
+        )
+    return next_id

@@ -1,56 +1,58 @@
+"""What is remembered of everybody, row by row."""
+
 import numpy as np
 import pytest
 
-from tracker.tracking.modes import Belief
-from tracker.tracking.people import People
-from tracker.tracking.streaks import Streaks
+from tracker.tracking.people import copy_person, kept, room_for, with_room
 
 
 @pytest.fixture
-def people() -> People:
-    belief = Belief.begin(np.zeros((3, 4)), np.tile(np.eye(4), (3, 1, 1)), 2, 0.1)
-    ids, existence = np.array([2, 0, 1]), np.full(3, 0.5)
-    return People.begin(ids, belief, 7, 4, existence)
+def people():
+    """Three in two modes, of whom every number differs."""
+    room = room_for(2, 3, 4)
+    rng = np.random.default_rng(1)
+    for array in room:
+        array[:] = rng.integers(0, 100, array.shape)
+    room.recent[:] = [[True, False, False, False], [False] * 4, [True] * 4]
+    return room
 
 
-def test_people_begin_now_without_a_hand_or_a_count(people):
-    for stamps_ns in (people.born_ns, people.seen_ns, people.called_ns):
-        assert stamps_ns.tolist() == [7, 7, 7]
-    assert people.raised_since_ns.tolist() == people.hand.tolist() == [-1, -1, -1]
-    for nothing in (people.detections, people.raised, people.recent):
-        assert not nothing.any()
+def rows_of(people, rows):
+    """Everything about some of them, with the people on the first axis."""
+    by_mode = [np.moveaxis(each, 1, 0)[rows] for each in people[:3]]
+    by_item = [each.T[rows] for each in (people.spans, people.counts, people.flags)]
+    return [*by_mode, *by_item, people.recent[rows]]
 
 
-def test_what_is_replaced_leaves_everything_else_and_the_original_as_they_were(people):
-    changed = people.replace(id=np.array([5, 6, 7]), missing_s=np.ones(3))
-    assert changed.id.tolist() == [5, 6, 7]
-    assert people.id.tolist() == [2, 0, 1]
-    assert changed.missing_s.tolist() == [1, 1, 1]
-    assert changed.existence.tolist() == [0.5] * 3
-    assert changed.born_ns.tolist() == [7, 7, 7]
+def assert_same(one, other):
+    for mine, theirs in zip(one, other, strict=True):
+        np.testing.assert_array_equal(mine, theirs)
 
 
-def test_streaks_are_replaced_as_one(people):
-    streaks = Streaks(np.array([2, 0, 0]), np.array([0, 1, 3]), np.array([True, True, False]))
-    changed = people.replace(streaks=streaks)
-    assert changed.detected.tolist() == [2, 0, 0]
-    assert changed.missed.tolist() == [0, 1, 3]
-    assert changed.raised.tolist() == [True, True, False]
+def test_there_is_room_for_so_many_people_modes_and_images():
+    room = room_for(2, 3, 4)
+    assert [each.shape for each in room] == [
+        *((2, 3), (2, 3, 4), (2, 3, 4, 4)),
+        *((4, 3), (10, 3), (2, 3), (3, 4)),
+    ]
+    assert [each.dtype.name for each in room] == [*["float64"] * 4, "int64", "bool", "bool"]
 
 
-def test_a_field_that_people_do_not_have_is_refused(people):
-    with pytest.raises(TypeError, match="wisdom"):
-        people.replace(wisdom=np.zeros(3))
+def test_whoever_is_copied_is_the_same_in_the_other_row(people):
+    room = room_for(2, 3, 4)
+    copy_person(people, 2, room, 0)
+    assert_same(rows_of(room, [0]), rows_of(people, [2]))
 
 
-def test_customers_come_in_the_order_of_their_identities(people):
-    assert people.customers().id.tolist() == [1, 2]
-    assert people[[2, 0]].append(people[[1]]).id.tolist() == [1, 2, 0]
+def test_with_room_behind_them_people_are_the_same_and_their_arrays_their_own(people):
+    room = with_room(people, 2)
+    assert room.weight.shape == (2, 5)
+    assert_same(rows_of(room, [0, 1, 2]), rows_of(people, [0, 1, 2]))
+    for mine, theirs in zip(with_room(people, 0), people, strict=True):
+        assert not np.shares_memory(mine, theirs)
 
 
-def test_nobody_outside_can_write_to_people_or_to_their_tracks(people):
-    tracks = people.as_tracks(8, None)
-    for array in (people.id, people.existence, people.belief.mean, people.recent):
-        assert not array.flags.writeable
-    for name in ("id", "mean", "covariance", "raised", "age_s", "unseen_s"):
-        assert not getattr(tracks, name).flags.writeable
+def test_those_who_are_kept_stay_in_order(people):
+    keep = np.array([True, False, True])
+    assert_same(rows_of(kept(people, keep, 2), [0, 1]), rows_of(people, [0, 2]))
+    assert kept(people, np.zeros(3, dtype=bool), 0).weight.shape == (2, 0)

@@ -7,6 +7,8 @@ from hypothesis.extra import numpy as hnp
 from tracker import Config, Measurements, PersonTracker
 from tracker.errors import ClockError
 
+pytestmark = pytest.mark.usefixtures("machine_code")
+
 PERIOD_NS = 100_000_000
 NOISE = 0.08**2 * np.eye(2)
 
@@ -80,7 +82,7 @@ def test_the_same_hand_up_again_is_the_same_person():
 
 
 def test_a_customer_whom_nothing_shows_is_gone_after_delete_after_s():
-    tracker = PersonTracker(Config(delete_after_s=2.0))
+    tracker = PersonTracker(Config(delete_after_s=2.05))
     run(tracker, [raised_at((2, 1))] * 5)
     assert len(run(tracker, [Measurements.none()] * 20, start=5)) == 1
     assert len(run(tracker, [Measurements.none()], start=25)) == 0
@@ -130,6 +132,48 @@ def test_customers_come_in_the_order_of_their_identities_whoever_was_seen_first(
     assert tracks.mean[:, 0] == pytest.approx([4, 2], abs=0.1)
 
 
+def test_everybody_is_there_bystanders_with_identities_below_0():
+    tracker = PersonTracker()
+    assert len(tracker.people) == 0
+    run(tracker, [seen_at((2, 1))] * 10)
+    tracks = run(tracker, [Measurements.concatenate(raised_at((4, -1)), seen_at((2, 1)))] * 3, 10)
+    everybody = tracker.people
+    assert sorted(everybody.id.tolist()) == [-1, 1]
+    bystander, customer = everybody[everybody.id == -1], everybody[everybody.id == 1]
+    assert bystander.mean[0, :2] == pytest.approx([2, 1], abs=0.01)
+    assert bystander.raised.tolist() == [False]
+    np.testing.assert_array_equal(customer.mean, tracks.mean)
+    assert everybody.stamp_ns == tracks.stamp_ns
+    np.testing.assert_array_equal(tracker.positions_m, everybody.mean[:, :2])
+
+
+def test_a_bystander_who_calls_is_a_customer_under_another_identity():
+    tracker = PersonTracker()
+    run(tracker, [seen_at((2, 1), (4, -1))] * 10)
+    assert tracker.people.id.tolist() == [-1, -2]
+    run(tracker, [Measurements.concatenate(raised_at((4, -1)), seen_at((2, 1)))] * 3, 10)
+    assert tracker.people.id.tolist() == [-1, 1]
+
+
+def test_identities_of_bystanders_are_not_reused_either():
+    tracker = PersonTracker()
+    run(tracker, [seen_at((2, 1))] * 3)
+    tracker.reset()
+    run(tracker, [seen_at((2, 1))] * 3, start=3)
+    assert tracker.people.id.tolist() == [-2]
+
+
+def test_a_doubted_motion_widens_what_is_believed_of_everybody_by_it():
+    tracker = PersonTracker()
+    before = run(tracker, [raised_at((2, 0), (4, 1))] * 5)
+    tracker.doubt(np.array([0.3, 0.0, 0.1]), 0.5)
+    turn = np.array([[np.cos(0.1), -np.sin(0.1)], [np.sin(0.1), np.cos(0.1)]])
+    off = before.mean[:, :2] @ turn.T + [0.3, 0.0] - before.mean[:, :2]
+    grown = tracker.people.covariance[:, :2, :2] - before.covariance[:, :2, :2]
+    np.testing.assert_allclose(grown, off[:, :, None] * off[:, None], atol=1e-12)
+    np.testing.assert_array_equal(tracker.people.mean, before.mean)
+
+
 def test_only_customers_count_as_tracks():
     tracker = PersonTracker()
     run(tracker, [seen_at((2, 1))] * 10)
@@ -171,9 +215,8 @@ def test_crossing_people_keep_their_identities():
     assert tracks.mean[:, 3] == pytest.approx([0.5, -0.5], abs=0.25)
 
 
-@pytest.mark.parametrize("compiled", [True, False])
-def test_callers_who_pass_within_a_hand_s_reach_are_both_heard_all_the_time(compiled):
-    tracker = PersonTracker(compiled=compiled)
+def test_callers_who_pass_within_a_hand_s_reach_are_both_heard_all_the_time(tracker_of):
+    tracker = tracker_of()
     for number in range(60):
         y = -1.5 + 0.05 * number
         tracks = tracker.step(number * PERIOD_NS, raised_at((2.0, y), (2.25, -y)))
@@ -222,6 +265,12 @@ def test_changed_parameters_keep_the_tracks():
     tracks = run(tracker, [seen_at((2, 1))], start=5)
     assert tracks.id.tolist() == [1]
     assert tracks.raised.tolist() == [False]
+
+
+def test_stamps_that_are_no_times_are_an_error():
+    for stamp_ns in (1.5, "now", 2**64, np.int64(-3)):
+        with pytest.raises(ClockError):
+            PersonTracker().step(stamp_ns, Measurements.none())
 
 
 @settings(max_examples=60, deadline=None)

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tracker import Config, Measurements, PersonTracker
+from tracker.containers.as_positions import as_positions
 from tracker.errors import ClockError, MeasurementError
-from tracker.tracking.reference import ReferenceTracker, as_positions
+from tracker.tracking.reference import ReferenceTracker
 
 PLAIN = Config().replace(
     motion="cv",

@@ -4,71 +4,115 @@ import numpy as np
 import pytest
 
 from tracker import Config, Measurements
-from tracker.tracking.life_cycle import count_detections
+from tracker.tracking.claims import claims_of
+from tracker.tracking.found import nothing_found
+from tracker.tracking.instant import Instant
 from tracker.tracking.motion import modes_of
-from tracker.tracking.observation import Observed
-from tracker.tracking.people import People
+from tracker.tracking.people import AGE_S, DETECTIONS, HAND, ID, MISSING_S, TAG, UNSEEN_S, room_for
 from tracker.tracking.renewal import renew
+from tracker.tracking.settings import settings_of
+from tracker.tracking.view import view_numbers
 
 CONFIG = Config()
 NOISE = 0.01 * np.eye(2)
-NOTHING = np.zeros((0, 2))
+EVERYWHERE = view_numbers(None)
 
 
-def claims(places, raised=True, hand=-1):
-    return Measurements.cartesian(np.reshape(places, (-1, 2)), NOISE, raised=raised, hand=hand)
+def at(places, raised=True, **claimed):
+    return Measurements.cartesian(np.reshape(places, (-1, 2)), NOISE, raised=raised, **claimed)
 
 
-def observed(people=None, raised=NOTHING, others=NOTHING, is_called=(), is_seen=(), hand=-1):
-    people = people or People.nobody(CONFIG.confirm_window, modes_of(CONFIG))
-    called, seen = np.array(is_called, dtype=bool), np.array(is_seen, dtype=bool)
-    return Observed(people, called, seen, claims(raised), claims(others, False, hand))
+def renewed(measured, people=None, owner=None, next_id=1, stamp_ns=0, next_bystander=-1):
+    """The frame after these measurements; `owner` says whose they are."""
+    if people is None:
+        people = room_for(modes_of(CONFIG), 0, CONFIG.confirm_window)
+    known = people.weight.shape[1]
+    found = nothing_found(known, len(measured), np.arange(len(measured)))
+    for row, person in enumerate(owner or ()):
+        found.owner[row], found.certainty[person] = person, 1.0
+        found.is_called[person] |= measured.raised[row]
+        found.hand[person] = measured.hand[row]
+    instant = Instant(
+        *(stamp_ns, 0.1, next_id, next_bystander, EVERYWHERE, EVERYWHERE, False, True)
+    )
+    return renew(people, claims_of(measured, 0.1, CONFIG), found, instant, settings_of(CONFIG))
 
 
-def room(*others):
-    """Bystanders at these places."""
-    people, _ = renew(observed(others=others), 1, 0, CONFIG)
-    return people
+def bystanders(*places):
+    return renewed(at(places, raised=False)).people
 
 
 def test_raised_hands_begin_customers_under_the_next_identities():
-    people, next_id = renew(observed(raised=[(1.0, 0.0), (5.0, 0.0)]), 7, 0, CONFIG)
-    assert people.id.tolist() == [7, 8]
-    assert people.detections.tolist() == [1, 1]
-    assert next_id == 9
+    frame = renewed(at([(1.0, 0.0), (5.0, 0.0)]), next_id=7)
+    assert frame.people.counts[ID].tolist() == [7, 8]
+    assert frame.people.counts[DETECTIONS].tolist() == [1, 1]
+    assert frame.next_id == 9
 
 
-def test_a_cluster_of_the_scan_begins_a_bystander_and_spends_no_identity():
-    people, next_id = renew(observed(others=[(1.0, 0.0)]), 7, 0, CONFIG)
-    assert people.id.tolist() == [0]
-    assert next_id == 7
+def test_a_cluster_of_the_scan_begins_a_bystander_and_spends_no_customer_s_identity():
+    frame = renewed(at([(1.0, 0.0), (5.0, 0.0)], raised=False), next_id=7, next_bystander=-3)
+    assert frame.people.counts[ID].tolist() == [-3, -4]
+    assert (frame.next_id, frame.next_bystander) == (7, -5)
 
 
 def test_a_lowered_hand_alone_is_nobody():
-    people, _ = renew(observed(others=[(1.0, 0.0)], hand=3), 1, 0, CONFIG)
-    assert len(people) == 0
+    frame = renewed(at([(1.0, 0.0)], raised=False, hand=3))
+    assert frame.people.weight.shape[1] == 0
+    assert frame.refused == 0
+
+
+def test_a_range_alone_shows_nobody_new_and_is_counted():
+    ranges = Measurements.ranges([2.0, 3.0], 0.1, raised=[True, False])
+    frame = renewed(ranges)
+    assert frame.people.weight.shape[1] == 0
+    assert frame.refused == 2
+    assert frame.next_id == 1
 
 
 def test_a_bystander_who_is_called_gets_the_next_identity():
-    called, seen = np.array([False, True]), np.array([True, True])
-    people = count_detections(room((1.0, 0.0), (5.0, 0.0)), called, seen, 10**8, CONFIG)
-    seen = observed(people, is_called=called, is_seen=seen)
-    people, next_id = renew(seen, 4, 10**8, CONFIG)
-    assert people.id.tolist() == [0, 4]
-    assert next_id == 5
+    people = bystanders((1.0, 0.0), (5.0, 0.0))
+    both = Measurements.concatenate(at([1.0, 0.0], raised=False), at([5.0, 0.0], hand=6))
+    frame = renewed(both, people, owner=[0, 1], next_id=4, stamp_ns=10**8)
+    assert frame.people.counts[ID].tolist() == [-1, 4]
+    assert frame.people.counts[HAND].tolist() == [-1, 6]
+    assert frame.next_id == 5
+
+
+def test_a_hint_of_identity_is_remembered():
+    people = bystanders((1.0, 0.0))
+    assert people.counts[TAG].tolist() == [-1]
+    frame = renewed(at([1.0, 0.0], identity=9), people, owner=[0], stamp_ns=10**8)
+    assert frame.people.counts[TAG].tolist() == [9]
 
 
 @pytest.mark.parametrize(("reaches", "count"), [(0.5, 1), (1.5, 2)])
 def test_a_hand_within_a_persons_reach_is_their_second_one(reaches, count):
-    people, _ = renew(observed(raised=[(1.0, 0.0)]), 1, 0, CONFIG)
+    people = renewed(at([1.0, 0.0])).people
     apart_m = reaches * CONFIG.same_person_distance_m
-    seen = observed(people, raised=[(1.0 + apart_m, 0.0)], is_called=[True], is_seen=[True])
-    people, _ = renew(seen, 2, 10**8, CONFIG)
-    assert len(people) == count
+    hands = at([(1.0, 0.0), (1.0 + apart_m, 0.0)])
+    frame = renewed(hands, people, owner=[0], next_id=2, stamp_ns=10**8)
+    assert frame.people.weight.shape[1] == count
 
 
 def test_whoever_is_not_there_any_more_is_let_go():
-    people = room((1.0, 0.0))
-    gone = people.replace(missing_s=np.array([2.0 * CONFIG.delete_after_s]))
-    people, _ = renew(observed(gone, is_called=[False], is_seen=[False]), 1, 10**8, CONFIG)
-    assert len(people) == 0
+    people = bystanders((1.0, 0.0), (5.0, 0.0))
+    people.spans[MISSING_S, 0] = 2.0 * CONFIG.delete_after_s
+    frame = renewed(Measurements.none(), people, stamp_ns=10**8)
+    assert frame.people.counts[ID].tolist() == [-2]
+    assert frame.mean[0, :, 0].tolist() == [5.0]
+
+
+def test_the_frame_s_gaussians_are_those_of_its_people(merged):
+    people = bystanders((1.0, 0.0), (5.0, 0.0))
+    people.mean[1] += 0.1
+    frame = renewed(at([9.0, 0.0]), people, stamp_ns=10**8)
+    assert frame.mean.shape == (1, 3, 4)
+    for found, expected in zip((frame.mean, frame.covariance), merged(frame.people), strict=True):
+        np.testing.assert_array_equal(found[0], expected)
+
+
+def test_everybody_s_age_and_silence_are_counted_in_seconds():
+    people = bystanders((1.0, 0.0), (5.0, 0.0))
+    frame = renewed(at([1.0, 0.0], raised=False), people, owner=[0], stamp_ns=25 * 10**7)
+    assert frame.people.spans[AGE_S].tolist() == [0.25, 0.25]
+    assert frame.people.spans[UNSEEN_S].tolist() == [0.0, 0.25]

@@ -9,10 +9,13 @@ from hypothesis.extra import numpy as hnp
 from tracker import Config, Measurements, PersonTracker
 from tracker.tracking import View
 
+pytestmark = pytest.mark.usefixtures("machine_code")
+
 NOISE = 0.08**2 * np.eye(2)
 CONFIGS = {
     "everything on": Config(hand_bias_duration_s=1.0, confirmation="existence"),
-    "plain": Config(motion="cv", outlier_dof=0.0),
+    "plain": Config(motion="cv", association="hungarian", outlier_dof=0.0),
+    "one mode": Config(motion="cv", confirmation="m_of_n"),
     "joint probabilities": Config(association="jpda"),
     "joint probabilities, one mode": Config(association="jpda", motion="cv"),
 }
@@ -35,7 +38,6 @@ def some_people(tracker):
         tracker.step(number * 10**8, Measurements.cartesian([[2, 1], [1, 0], [2.3, 1.2]], NOISE))
 
 
-@pytest.mark.parametrize("compiled", [True, False], ids=["compiled", "arrays"])
 @pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
 @settings(max_examples=25, deadline=None)
 @given(
@@ -50,9 +52,9 @@ def some_people(tracker):
     ),
 )
 def test_whatever_comes_the_state_stays_sound(
-    config, compiled, values, std, mixed, pose, doubt, raised, gaps_ns
+    tracker_of, config, values, std, mixed, pose, doubt, raised, gaps_ns
 ):
-    tracker = PersonTracker(config, compiled=compiled)
+    tracker = tracker_of(config)
     some_people(tracker)
     polar, place = slice(3), slice(3, 6)
     noise = np.array([[0.1, mixed], [mixed, 0.1]])
@@ -138,14 +140,10 @@ def test_a_bias_of_the_hand_keeps_many_looks_from_being_more_certain_than_one():
     assert spread[0.0] < 0.15 < spread[5.0]
 
 
-@pytest.mark.parametrize("compiled", [True, False], ids=["compiled", "arrays"])
 @pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
 @pytest.mark.parametrize("far_m", [(467_000.25, 5_540_000.5), (-1e8, 1e8)], ids=["UTM", "1e8 m"])
-def test_people_are_tracked_alike_on_a_map_whose_origin_is_far_away(config, compiled, far_m):
-    here, there = (
-        PersonTracker(config, compiled=compiled),
-        PersonTracker(config, compiled=compiled),
-    )
+def test_people_are_tracked_alike_on_a_map_whose_origin_is_far_away(tracker_of, config, far_m):
+    here, there = tracker_of(config), tracker_of(config)
     far = np.array(far_m)
     rng = np.random.default_rng(4)
     for number in range(60):

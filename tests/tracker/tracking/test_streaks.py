@@ -1,14 +1,20 @@
 import numpy as np
 import pytest
 
-from tracker.tracking.streaks import Streaks
+from tracker.tracking.people import DETECTED, MISSED, RAISED
+from tracker.tracking.streaks import step_streak
+
+
+def beginning(people):
+    """Counts and flags of so many, of whom nothing was seen."""
+    return np.zeros((10, people), dtype=np.int64), np.zeros((2, people), dtype=bool)
 
 
 def run(pattern, raise_streak=2, lower_streak=3):
-    streaks, word = Streaks.begin(1), ""
+    (counts, flags), word = beginning(1), ""
     for letter in pattern:
-        streaks = streaks.step(np.array([letter == "x"]), raise_streak, lower_streak)
-        word += "R" if streaks.raised[0] else "."
+        step_streak(counts, flags, 0, letter == "x", raise_streak, lower_streak)
+        word += "R" if flags[RAISED, 0] else "."
     return word
 
 
@@ -31,9 +37,10 @@ def test_the_streaks_are_parameters():
 
 
 def test_every_track_has_streaks_of_its_own():
-    streaks = Streaks.begin(2)
-    for first, second in [(True, False), (True, True), (False, True)]:
-        streaks = streaks.step(np.array([first, second]), 2, 3)
-    assert streaks.raised.tolist() == [True, True]
-    assert streaks.detected.tolist() == [0, 2]
-    assert streaks.missed.tolist() == [1, 0]
+    counts, flags = beginning(2)
+    for both in [(True, False), (True, True), (False, True)]:
+        for person, is_detected in enumerate(both):
+            step_streak(counts, flags, person, is_detected, 2, 3)
+    assert flags[RAISED].tolist() == [True, True]
+    assert counts[DETECTED].tolist() == [0, 2]
+    assert counts[MISSED].tolist() == [1, 0]

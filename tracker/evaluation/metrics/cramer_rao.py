@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import FloatArray
-from tracker.tracking.motion import process_noise, transition
+from tracker.evaluation.metrics.constant_velocity import process_noise, transition
 
 
 def polar_information(

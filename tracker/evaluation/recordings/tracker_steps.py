@@ -19,7 +19,7 @@ from tracker.perception.detector import HandDetector
 from tracker.pipeline import Pipeline
 from tracker.recording import Topics
 from tracker.tracking import PersonTracker, View
-from tracker.tracking.innovations import Watch
+from tracker.tracking.trace import Watch
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,9 +113,19 @@ class _Steps(PersonTracker):
         *,
         view: View | None = None,
         scan_view: View | None = None,
+        camera_looked: bool = True,
+        likeness: ArrayLike | None = None,
     ) -> Tracks:
         x_m, y_m = map(float, robot_xy_m)  # type: ignore[arg-type]  # the pipeline gives an array
         step = Step(stamp_ns, measurements, (x_m, y_m), view, scan_view, self._is_anew)
         self.taken.append(step)
         self._is_anew = False
-        return super().step(stamp_ns, measurements, robot_xy_m, view=view, scan_view=scan_view)
+        return super().step(
+            stamp_ns,
+            measurements,
+            robot_xy_m,
+            view=view,
+            scan_view=scan_view,
+            camera_looked=camera_looked,
+            likeness=likeness,
+        )

@@ -3,24 +3,19 @@
 The tracker's way of one frame (predict, gate, assign, correct) for people who are known from the
 start and seen by one sensor at the origin: walkers at nearly constant velocity, Gaussian noise,
 the most likely assignment. Trials lie along the last axis of every array and the numbers of a
-state along the first, so that each operation runs through memory in one go. With numba (the extra
-`fast`) one compiled loop does the same.
+state along the first, so that each operation runs through memory in one go.
 """
 
 from __future__ import annotations
-
-from functools import cache
-from importlib.util import find_spec
-from typing import Any
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray
-from tracker.tracking.gating import gate_limit
-from tracker.tracking.motion import process_noise
-from tracker.tracking.sensor_model import RANGE_FLOOR_M
+from tracker.evaluation.metrics.constant_velocity import process_noise
+from tracker.tracking.sensor_kinds import RANGE_FLOOR_M
+from tracker.tracking.settings import gate_limit
 
 _TURN = 2.0 * np.pi
 
@@ -34,7 +29,6 @@ class BatchedTracker:
         config: `acceleration_density`, the gate, `detection_probability`, `newcomer_density`.
         bearing_std_rad: Noise of the bearings.
         range_std_m: Noise of the ranges.
-        compiled: Let numba do the work, if it is installed.
     """
 
     def __init__(
@@ -44,14 +38,11 @@ class BatchedTracker:
         config: Config,
         bearing_std_rad: float,
         range_std_m: float,
-        *,
-        compiled: bool = True,
     ) -> None:
         self.mean = np.array(mean, dtype=np.float64)
         self.covariance = np.array(covariance, dtype=np.float64)
         self._config = config
         self._noise = (bearing_std_rad**2, range_std_m**2)
-        self._compiled = _compiled_frame() if compiled else None
 
     def step(self, dt_s: float, bearing_rad: FloatArray, range_m: FloatArray) -> BoolArray:
         """Take in one frame of every trial.
@@ -69,13 +60,12 @@ class BatchedTracker:
             dt_s,
             config.acceleration_density,
             *self._noise,
-            gate_limit(True, config.gate_probability),
+            gate_limit(2, config.gate_probability),
             config.innovation_floor_m,
             _log_odds_offset(config),
         )
         chosen = np.zeros((len(bearing_rad), *self.mean.shape[1:]), dtype=bool)
-        frame = self._compiled or _frame
-        frame(self.mean, self.covariance, bearing_rad, range_m, chosen, *numbers)
+        _frame(self.mean, self.covariance, bearing_rad, range_m, chosen, *numbers)
         return chosen
 
 
@@ -171,12 +161,3 @@ def _frame(
     mean += by_bearing * first + by_range * second
     covariance -= by_bearing[:, None] * by_bearing
     covariance -= by_range[:, None] * by_range
-
-
-@cache
-def _compiled_frame() -> Any:
-    if find_spec("numba") is None:
-        return None
-    from tracker.evaluation.trials.compiled_tracker import track_frame
-
-    return track_frame

@@ -14,12 +14,14 @@ from numpy.typing import NDArray
 from tracker.config import Config
 from tracker.containers import FloatArray, Measurements
 from tracker.evaluation.metrics.consistency import normalized_squared
+from tracker.evaluation.metrics.constant_velocity import process_noise
 from tracker.evaluation.metrics.cramer_rao import polar_information
 from tracker.evaluation.trials.scenario import FilterScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.geometry import normalize_angle
-from tracker.tracking.filter import update
-from tracker.tracking.motion import predict, process_noise
+from tracker.tracking.claims import claims_of
+from tracker.tracking.correction import correct
+from tracker.tracking.motion import carry, walk
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,21 +120,25 @@ def run_filter(
         Means, shape (T, B, 4), and covariances, shape (T, B, 4, 4), after each measurement.
     """
     frames, count = trials.bearing_rad.shape
-    mean = trials.prior_mean
-    covariance = np.broadcast_to(prior_covariance(scenario), (count, 4, 4))
+    mean = trials.prior_mean[None].copy()
+    covariance = np.repeat(prior_covariance(scenario)[None, None], count, axis=1)
     means, covariances = np.empty((frames, count, 4)), np.empty((frames, count, 4, 4))
+    moved, root = walk(1.0 / scenario.rate_hz, config.acceleration_density), np.empty((4, 2))
     for frame in range(frames):
-        mean, covariance = predict(
-            mean, covariance, 1.0 / scenario.rate_hz, config.acceleration_density
-        )
         measured = Measurements.polar(
             trials.bearing_rad[frame],
             trials.range_m[frame],
             np.deg2rad(scenario.bearing_std_deg),
             scenario.range_std_m,
         )
-        mean, covariance = update(mean, covariance, measured, config.outlier_dof)
-        means[frame], covariances[frame] = mean, covariance
+        claims = claims_of(measured, 0.0, config)
+        for trial in range(count):
+            carry(mean, covariance, 0, trial, moved, mean, covariance)
+            correct(
+                mean, covariance, 0, trial, claims, trial, config.outlier_dof,
+                mean, covariance, trial, root,
+            )  # fmt: skip
+        means[frame], covariances[frame] = mean[0], covariance[0]
     return means, covariances
 
 

@@ -13,10 +13,10 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray
 from tracker.evaluation.metrics.consistency import normalized_squared
+from tracker.evaluation.metrics.constant_velocity import process_noise
 from tracker.evaluation.trials.batched_tracker import BatchedTracker, assign_trials
 from tracker.evaluation.trials.scenario import KnownPeopleScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
-from tracker.tracking.motion import process_noise
 
 #: A track this far from everybody stands for nobody.
 _CUTOFF_M = 1.0
@@ -103,8 +103,6 @@ def known_people_rows(
     seed: int,
     first: int,
     count: int,
-    *,
-    compiled: bool = True,
 ) -> dict[str, FloatArray]:
     """Run trials, all at once.
 
@@ -114,7 +112,6 @@ def known_people_rows(
         seed: Of the study.
         first: Number of the first trial.
         count: B.
-        compiled: As for `BatchedTracker`.
 
     Returns:
         Figures of each trial, shape (B,): `mse_m2`, over all people and frames; `wrong_share` of
@@ -129,7 +126,6 @@ def known_people_rows(
         config,
         float(np.deg2rad(scenario.bearing_std_deg)),
         scenario.range_std_m,
-        compiled=compiled,
     )
     squared, wrong, taken = np.zeros((3, count))
     is_own = np.eye(trials.bearing_rad.shape[1], scenario.people, dtype=bool)[..., None]

@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tracker.containers import BoolArray, FloatArray, IntArray, Measurements
+from tracker.containers import BoolArray, FloatArray, IntArray, Measurements, View
 from tracker.evaluation.trials.people_scene import PeopleScene
 from tracker.evaluation.trials.scenario import PeopleScenario
 from tracker.geometry import normalize_angle
-from tracker.tracking.view import View
 
 _CLUSTER_BEARING_STD_RAD = 0.01
 _HIDDEN_SHARE = 0.9  # somebody behind another is still seen now and then

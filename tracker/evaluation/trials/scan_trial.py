@@ -21,7 +21,7 @@ from tracker.simulation.restaurant import draw_restaurant
 from tracker.simulation.scene import Scene
 from tracker.simulation.shown_hands import show_hands
 from tracker.simulation.stream import map_from_camera, map_from_laser
-from tracker.tracking.innovations import Watch
+from tracker.tracking.trace import Watch
 from tracker.transforms import StampedTransform
 
 

@@ -14,10 +14,12 @@ import numpy as np
 from tracker.config import Config
 from tracker.errors import ConfigError
 from tracker.evaluation.metrics.consistency import mean_bounds
+from tracker.evaluation.metrics.innovations import Innovations, innovations_of
+from tracker.evaluation.metrics.rounds import rounds_of
 from tracker.evaluation.recordings.tracker_steps import Step, run_steps
 from tracker.evaluation.trials.people_trial import people_steps
 from tracker.evaluation.trials.scenario import PeopleScenario, default_config
-from tracker.tracking.innovations import Innovations, Round, innovations_of
+from tracker.tracking.trace import Watched
 
 
 class InnovationLog:
@@ -26,10 +28,11 @@ class InnovationLog:
     def __init__(self) -> None:
         self._parts: list[Innovations] = []
 
-    def __call__(self, round_: Round) -> None:
-        """Keep one round's assigned measurements."""
-        if len(round_.chosen):
-            self._parts.append(innovations_of(round_))
+    def __call__(self, watched: Watched) -> None:
+        """Keep a frame's assigned measurements."""
+        for round_ in rounds_of(watched):
+            if round_.is_chosen.any():
+                self._parts.append(innovations_of(round_))
 
     @property
     def innovations(self) -> Innovations:

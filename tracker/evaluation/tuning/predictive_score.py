@@ -22,11 +22,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import FloatArray, IntArray
+from tracker.containers import FloatArray, IntArray, View
+from tracker.evaluation.metrics.innovations import log_densities
+from tracker.evaluation.metrics.rounds import Round, rounds_of
 from tracker.evaluation.recordings.tracker_steps import Step, run_steps
-from tracker.tracking.gating import density_of_nobody
-from tracker.tracking.innovations import Round, log_densities
-from tracker.tracking.view import View
+from tracker.tracking.trace import Watched
 
 
 class PredictiveScore:
@@ -42,17 +42,21 @@ class PredictiveScore:
         self._stamps: list[IntArray] = [np.zeros(0, dtype=np.int64)]
         self._scores: list[FloatArray] = [np.zeros(0)]
 
-    def __call__(self, round_: Round) -> None:
-        """Score one round's measurements."""
-        count = len(round_.claims)
-        if count == 0:
-            return
-        pairs, density = round_.pairs, density_of_nobody(round_.claims, round_.config)
+    def __call__(self, watched: Watched) -> None:
+        """Score a frame's measurements."""
+        for round_ in rounds_of(watched):
+            self._score(round_)
+
+    def _score(self, round_: Round) -> None:
+        count = len(round_.rows)
         expected = round_.existence * round_.chance
-        share = np.exp(log_densities(round_, pairs) - pairs.log_newcomer) * expected[pairs.track]
-        foretold = np.bincount(pairs.claim, share, count)  # in units of the newcomers' density
-        is_hand = bool(round_.claims.raised[0])  # a round is of raised hands, or has none
+        share = np.exp(log_densities(round_) - round_.log_newcomer) * expected[round_.track]
+        place = np.searchsorted(round_.rows, round_.claim)
+        foretold = np.bincount(place, share, count)  # in units of the newcomers' density
+        is_hand = bool(round_.claims.raised[round_.rows[0]])  # of all or of none in a round
         area_m2 = self._camera_area_m2 if is_hand else self._scan_area_m2
+        config = round_.config
+        density = config.newcomer_density if is_hand else config.bystander_density
         total = density * area_m2 + expected.sum()
         self._scores.append(np.log(density) + np.log1p(foretold) - np.log(total))
         self._stamps.append(np.full(count, round_.stamp_ns, dtype=np.int64))

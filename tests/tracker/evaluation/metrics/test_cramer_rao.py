@@ -75,7 +75,7 @@ def test_a_bearing_alone_tells_nothing_along_the_ray():
 def test_for_a_linear_sensor_the_bound_is_the_kalman_filter_s_covariance():
     from filterpy.kalman import KalmanFilter
 
-    from tracker.tracking.motion import process_noise, transition
+    from tracker.evaluation.metrics.constant_velocity import process_noise, transition
 
     kalman = KalmanFilter(4, 2)
     kalman.F, kalman.Q = transition(0.2), process_noise(0.2, 0.5)

@@ -14,8 +14,9 @@ from tracker.evaluation.trials.filter_study import (
     prior_covariance,
 )
 from tracker.evaluation.trials.scenario import SCENARIOS, default_config
-from tracker.tracking.filter import innovations, update
-from tracker.tracking.motion import predict
+from tracker.tracking.claims import claims_of
+from tracker.tracking.correction import correct
+from tracker.tracking.motion import carry, walk
 
 TRIALS = 1000
 
@@ -65,25 +66,26 @@ def test_a_linear_sensor_s_innovations_are_white_and_of_the_claimed_size():
     rng = np.random.default_rng(11)
     scenario, trials, noise = SCENARIOS["model-matched"], 200, np.diag([0.04, 0.02])
     drawn = draw_filter_trials(scenario, 11, 0, trials)
-    mean = drawn.prior_mean
-    covariance = np.broadcast_to(prior_covariance(scenario), (trials, 4, 4))
+    mean = drawn.prior_mean[None].copy()
+    covariance = np.repeat(prior_covariance(scenario)[None, None], trials, axis=1)
+    motion, root = walk(0.1, scenario.acceleration_density), np.empty((4, 2))
     nis, white = [], []
     for truth in drawn.truth:
-        mean, covariance = predict(mean, covariance, 0.1, scenario.acceleration_density)
         xy = truth[:, :2] + rng.standard_normal((trials, 2)) @ np.sqrt(noise)
-        measured = Measurements.cartesian(xy, noise)
-        innovation, spread = innovations(mean, covariance, measured)
-        rows = np.arange(trials)
-        innovation, spread = innovation[rows, rows], spread[rows, rows]
+        claims = claims_of(Measurements.cartesian(xy, noise), 0.1, Config())
+        for row in range(trials):
+            carry(mean, covariance, 0, row, motion, mean, covariance)
+        innovation, spread = xy - mean[0, :, :2], covariance[0, :, :2, :2] + noise
         nis.append(normalized_squared(innovation, spread))
         white.append(np.linalg.solve(np.linalg.cholesky(spread), innovation[..., None])[..., 0])
-        mean, covariance = update(mean, covariance, measured)
+        for row in range(trials):
+            correct(mean, covariance, 0, row, claims, row, 0.0, mean, covariance, row, root)
     low, high = chi_square_bounds(2, trials * scenario.frames)
     assert low <= np.mean(nis) <= high
     # Whitened innovations of neighboring frames: their products have mean 0 and variance 1.
     products = (np.array(white[1:]) * np.array(white[:-1])).ravel()
     assert abs(products.sum()) <= norm.ppf(0.9995) * np.sqrt(len(products))
-    nees = normalized_squared(drawn.truth[-1] - mean, covariance)
+    nees = normalized_squared(drawn.truth[-1] - mean[0], covariance[0])
     low, high = chi_square_bounds(4, trials)
     assert low <= nees.mean() <= high
 

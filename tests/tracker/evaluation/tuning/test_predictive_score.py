@@ -3,9 +3,9 @@ import pytest
 from scipy.stats import norm
 
 from tracker import Config, Measurements
+from tracker.containers import View
 from tracker.evaluation.recordings.tracker_steps import Step, run_steps
 from tracker.evaluation.tuning.predictive_score import PredictiveScore, score_steps
-from tracker.tracking.view import View
 
 PERIOD_NS = 100_000_000
 MATCHED = Config(

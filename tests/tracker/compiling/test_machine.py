@@ -1,0 +1,136 @@
+"""Machine code comes in the background, and is kept."""
+
+import logging
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from tracker.compiling import files
+from tracker.compiling.machine import Machine
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Where code would be kept: an empty place."""
+    monkeypatch.setattr(files, "folder", lambda: tmp_path / "code")
+    return tmp_path / "code"
+
+
+@pytest.fixture
+def wait_for_the_compiler():
+    """Waits until whatever was begun in the background since the test began is done."""
+    others = threading.enumerate()
+
+    def wait():
+        for thread in threading.enumerate():
+            if thread not in others:
+                thread.join()
+
+    return wait
+
+
+def test_nothing_waits_for_the_compiler_and_then_the_code_is_there(
+    small, folder, wait_for_the_compiler
+):
+    machine = Machine(small().build)
+    machine.start()
+    assert machine.code is None
+    machine.start()  # once is enough
+    wait_for_the_compiler()
+    assert machine.code(3.0) == 6.0
+    assert files.are_in(folder)
+
+
+def test_code_that_is_kept_is_there_at_once(small, folder):
+    module = small()
+    module.build(folder)
+    machine = Machine(module.build)
+    machine.start()
+    assert machine.code(3.0) == 6.0
+    assert sum(machine.code.stats.cache_hits.values()) == 1
+
+
+def test_who_wants_to_wait_is_told_once_that_the_compiler_runs(small, folder):
+    said, build = [], small().build
+    for _ in range(2):
+        machine = Machine(build)
+        machine.finish(said.append)
+        assert machine.code(3.0) == 6.0
+        machine.finish(said.append)
+    (sentence,) = said
+    assert sentence.startswith("Compiling the tracker, once on this machine")
+
+
+def test_where_nothing_can_be_kept_it_is_said_and_works_all_the_same(
+    small, folder, caplog, wait_for_the_compiler
+):
+    folder.write_text("a file where the folder should be")
+    machine, said = Machine(small().build), []
+    machine.start()
+    wait_for_the_compiler()
+    assert machine.code(3.0) == 6.0
+    assert str(folder) in caplog.text
+    assert "NUMBA_CACHE_DIR" in caplog.text
+
+    machine = Machine(machine._build)
+    machine.finish(said.append)
+    assert machine.code(3.0) == 6.0
+    assert str(folder) in said[-1]
+    assert "NUMBA_CACHE_DIR" in said[-1]
+
+
+def test_who_has_no_home_has_no_folder_and_code_nevertheless(small, monkeypatch):
+    monkeypatch.setattr(files, "folder", lambda: None)
+    machine, said = Machine(small().build), []
+    machine.finish(said.append)
+    assert machine.code(3.0) == 6.0
+    assert "no home" in said[-1]
+
+
+def test_a_compiler_that_fails_is_said_and_python_goes_on(
+    small, folder, caplog, capfd, wait_for_the_compiler
+):
+    machine = Machine(small().fail)
+    machine.start()
+    wait_for_the_compiler()
+    assert machine.code is None
+    assert "The compiler failed" in caplog.text
+    assert "no compiler today" in capfd.readouterr().err
+
+
+def test_where_no_process_can_be_started_python_goes_on(
+    small, folder, caplog, monkeypatch, wait_for_the_compiler
+):
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
+    machine = Machine(small().build)
+    machine.start()
+    wait_for_the_compiler()
+    assert machine.code is None
+    assert "No compiler can be started" in caplog.text
+
+
+def test_a_program_that_ends_does_not_wait_for_its_compiler(small, folder):
+    module = small()
+    program = (
+        "import time\n"
+        "from pathlib import Path\n"
+        "from tracker.compiling import files\n"
+        f"from {module.__name__} import build\n"
+        "from tracker.compiling.machine import Machine\n"
+        f"files.folder = lambda: Path({str(folder)!r})\n"
+        "Machine(build).start()\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert not files.are_in(folder)
+
+
+def test_in_the_background_a_word_is_said_when_it_begins_and_when_it_is_done(
+    small, folder, caplog, wait_for_the_compiler
+):
+    caplog.set_level(logging.INFO)
+    Machine(small().build).start()
+    wait_for_the_compiler()
+    assert [record.levelname for record in caplog.records] == ["INFO", "INFO"]

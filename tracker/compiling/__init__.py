@@ -1,0 +1,1 @@
+"""Plain functions that numba turns into machine code in the background; where that is kept."""

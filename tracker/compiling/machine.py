@@ -1,0 +1,115 @@
+"""Machine code that is compiled by numba once on a machine, in the background, and kept.
+
+Until it is there, functions run as the Python that they are: nothing waits for the compiler but
+`Machine.finish`. The compiler is a process of its own, so that it takes no time from what
+runs in this one; what it leaves on disk is loaded.
+"""
+
+from __future__ import annotations
+
+import atexit
+import logging
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from threading import Event, Thread
+from typing import Any
+
+from tracker.compiling import files
+
+LOG = logging.getLogger(__name__)
+#: How often one looks whether the compiler is done.
+_LOOK_S = 0.1
+#: What the compiler's process does; whatever else runs goes first.
+_COMPILE = """
+import importlib, os, pathlib, sys
+os.nice(10)
+module, name, place = sys.argv[1:]
+getattr(importlib.import_module(module), name)(pathlib.Path(place))
+"""
+
+
+class Machine:
+    """Where the machine code of a function is, in this process.
+
+    Args:
+        build: Gives the compiled function, taken from a folder or kept there; it can be imported
+            by its name.
+
+    Attributes:
+        code: The compiled function; None as long as it is not here.
+    """
+
+    def __init__(self, build: Callable[[Path | None], Callable[..., Any]]) -> None:
+        self.code: Callable[..., Any] | None = None
+        self._build = build
+        self._thread: Thread | None = None
+        self._leaves = Event()
+
+    def start(self) -> None:
+        """Load what is compiled already, or let it be compiled in the background."""
+        if self.code is not None or self._thread is not None:
+            return
+        folder = files.folder()
+        if folder is not None and files.are_in(folder):
+            self.code = self._build(folder)
+            return
+        LOG.info("Compiling the tracker in the background, once on this machine.")
+        self._thread = Thread(target=self._compile, args=(folder,), name="compiler", daemon=True)
+        self._thread.start()
+        atexit.register(self._leave)
+
+    def finish(self, say: Callable[[str], None]) -> None:
+        """Load what is compiled already, or compile it now.
+
+        Args:
+            say: Gets a sentence before the compiler runs, and one where its work cannot be kept.
+        """
+        folder = files.folder()
+        if self.code is None:
+            if folder is None or not files.are_in(folder):
+                say("Compiling the tracker, once on this machine: a quarter of a minute ...")
+            self.code = self._build(folder)
+        trouble = files.trouble_with(folder)
+        if trouble:
+            say(_not_kept(trouble))
+
+    def _compile(self, folder: Path | None) -> None:
+        """Let a process of its own compile, then load what it left."""
+        trouble = files.trouble_with(folder)
+        if trouble:
+            LOG.warning(_not_kept(trouble))
+        with tempfile.TemporaryDirectory(prefix="raised-hand-") as elsewhere:
+            place = Path(elsewhere) if trouble or folder is None else folder
+            build = self._build
+            names = (build.__module__, build.__name__)
+            command = [sys.executable, "-c", _COMPILE, *names, str(place)]
+            try:
+                compiler = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+            except OSError as error:
+                LOG.warning("No compiler can be started (%s); Python tracks, slowly.", error)
+                return
+            while compiler.poll() is None:
+                if self._leaves.wait(_LOOK_S):
+                    compiler.terminate()
+                    return
+            if compiler.returncode == 0:
+                self.code = self._build(place)
+                LOG.info("The tracker is compiled.")
+            else:
+                LOG.warning("The compiler failed (its words are above); Python tracks, slowly.")
+
+    def _leave(self) -> None:
+        """The process ends: so does the compiler, and what is half loaded is loaded first."""
+        self._leaves.set()
+        if self._thread is not None:
+            self._thread.join()
+
+
+def _not_kept(trouble: str) -> str:
+    return (
+        f"The compiled tracker cannot be kept ({trouble}), so that every start compiles it; "
+        "set NUMBA_CACHE_DIR to a folder that may be written."
+    )

@@ -1,0 +1,103 @@
+"""How far were measurements from what was predicted?
+
+innovation y = z - h(x),    S = H P H' + R,    NIS = y' inv(S) y.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import gammaln
+
+from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.evaluation.metrics.rounds import Round
+from tracker.tracking.innovation import innovation_of, noise_of, seen_from
+from tracker.tracking.modes import merge_modes
+from tracker.tracking.sensor_kinds import BEARING, POSITION, RANGE
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Innovations:
+    """K measurements, each held against the person whom it was assigned to.
+
+    Attributes:
+        stamp_ns: Shape (K,).
+        id: Shape (K,): identities; below 0 for bystanders.
+        innovation: Shape (K, 2): bearing and range, or x and y; 0 in the place of a missing
+            number.
+        covariance: Shape (K, 2, 2): S, by the noise R that was stated. Ranges under `outlier_dof`
+            are heavier-tailed than that.
+        ranged: Shape (K,): two numbers were measured; otherwise a bearing or a range alone.
+        raised: Shape (K,): it was a raised hand.
+        log_likelihood: Shape (K,): under the filter's own density, heavy tails and all.
+        nis: Shape (K,): chi-square of two or one degrees of freedom where filter and world agree.
+    """
+
+    stamp_ns: IntArray
+    id: IntArray
+    innovation: FloatArray
+    covariance: FloatArray
+    ranged: BoolArray
+    raised: BoolArray
+    log_likelihood: FloatArray
+    nis: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.stamp_ns)
+
+    def __getitem__(self, rows: BoolArray | IntArray | slice) -> Innovations:
+        return Innovations(*(getattr(self, name)[rows] for name in self.__slots__))
+
+    @staticmethod
+    def concatenate(parts: Sequence[Innovations]) -> Innovations:
+        """One batch of one or more, in order."""
+        return Innovations(
+            *(
+                np.concatenate([getattr(part, name) for part in parts])
+                for name in Innovations.__slots__
+            )
+        )
+
+
+def innovations_of(round_: Round) -> Innovations:
+    """Innovations of one round's assigned pairs; modes of motion count by their probability."""
+    people, claims = len(round_.id), round_.claims
+    mean, covariance = np.empty((1, people, 4)), np.empty((1, people, 4, 4))
+    merge_modes(round_.weight, round_.mean, round_.covariance, mean[0], covariance[0])
+    track, claim = round_.track[round_.is_chosen], round_.claim[round_.is_chosen]
+    innovation, spread = np.empty((len(track), 2)), np.empty((len(track), 2, 2))
+    for pair, (person, row) in enumerate(zip(track, claim, strict=True)):
+        kind = claims.kind[row]
+        expected, _, own, doubt = seen_from(kind, mean, covariance, 0, person, claims, row)
+        innovation[pair] = innovation_of(kind, expected, claims, row)
+        s00, s01, s11 = np.sum([own, doubt, noise_of(kind, claims, row)], axis=0)
+        spread[pair] = [[s00, s01], [s01, s11]]
+    solved = np.linalg.solve(spread, innovation[..., None])[..., 0]
+    return Innovations(
+        stamp_ns=np.full(len(track), round_.stamp_ns, dtype=np.int64),
+        id=round_.id[track],
+        innovation=innovation,
+        covariance=spread,
+        ranged=~np.isin(claims.kind[claim], (BEARING, RANGE)),
+        raised=claims.raised[claim],
+        log_likelihood=log_densities(round_)[round_.is_chosen],
+        nis=(innovation * solved).sum(axis=-1),
+    )
+
+
+def log_densities(round_: Round) -> FloatArray:
+    """Log-density of each pair's measurement, were it the track's, shape (P,).
+
+    Modes of motion count by their probability. A Student-t's tail has its own normalization here,
+    so that densities under different `outlier_dof` compare; the assignment does without.
+    """
+    weight = round_.weight[:, round_.track].T
+    density = np.logaddexp.reduce(round_.log_likelihood + np.log(weight), axis=1)
+    dof = round_.config.outlier_dof
+    if dof > 0.0:
+        tailed = ~np.isin(round_.claims.kind[round_.claim], (BEARING, POSITION))
+        tail = gammaln((dof + 1.0) / 2.0) - gammaln(dof / 2.0) - 0.5 * np.log(dof / 2.0)
+        density = density + np.where(tailed, tail, 0.0)
+    return np.asarray(density)

@@ -1,0 +1,102 @@
+"""Is one person tracked twice? A track that fell silent beside one that did not."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.compiling.loops import loop
+from tracker.containers import BoolArray, FloatArray
+from tracker.tracking.people import (
+    BORN_NS,
+    CALLED_NS,
+    CONFIRMED,
+    DETECTIONS,
+    ID,
+    MISSING_S,
+    SEEN_NS,
+    People,
+    copy_person,
+)
+
+#: A track that has been silent for so long, beside a customer who is seen, is that customer.
+SILENT_S = 0.5
+#: Tracks that were followed side by side for longer are two people (guess); somebody who sets off
+#: is taken for two for a moment.
+TOGETHER_S = 0.5
+
+
+@loop
+def merge_duplicates(
+    people: People, mean: FloatArray, certainty: FloatArray, keep: BoolArray, distance_m: float
+) -> None:
+    """Join each silent customer with the nearest seen track closer than a distance, in place.
+
+    Whoever has appeared since the customer was last seen, or shortly before, is the customer, who
+    set off faster than expected: the older identity goes on, with what the seen track knows of
+    place, hand and time. Whoever was followed beside the customer before is somebody else. A
+    bystander is left alone then; a customer stays who they are, and the silent track, which has
+    strayed there, ends.
+
+    Args:
+        people: Everybody, those who have just come last.
+        mean: Shape (1, N, 4): of those who were there before.
+        certainty: Shape (P,): of all; above 0 for whom a measurement showed in this frame.
+        keep: Set to false for whoever is joined with somebody else.
+        distance_m: `same_person_distance_m`.
+    """
+    for silent in range(mean.shape[1]):
+        if certainty[silent] > 0.0 or people.counts[ID, silent] <= 0:
+            continue
+        seen = _nearest_duplicate(people, mean, certainty, silent, distance_m)
+        if seen < 0:
+            continue
+        is_customer = people.counts[ID, seen] > 0
+        is_older = not is_customer or people.counts[ID, silent] < people.counts[ID, seen]
+        if is_older and keep[seen] and not _were_together(people, silent, seen):
+            keep[seen] = False
+            _inherit(people, silent, seen)
+        else:
+            keep[silent] = False
+
+
+@loop
+def _nearest_duplicate(
+    people: People, mean: FloatArray, certainty: FloatArray, silent: int, distance_m: float
+) -> int:
+    """Row of the seen track that may be the same person, or -1."""
+    nearest, least = -1, distance_m
+    for seen in range(len(certainty)):
+        if certainty[seen] == 0.0:
+            continue
+        is_apart = _were_together(people, silent, seen)
+        if people.counts[ID, seen] > 0:
+            is_apart = people.spans[MISSING_S, silent] <= SILENT_S
+        x, y = people.mean[0, seen, 0], people.mean[0, seen, 1]
+        if seen < mean.shape[1]:
+            x, y = mean[0, seen, 0], mean[0, seen, 1]
+        dx, dy = mean[0, silent, 0] - x, mean[0, silent, 1] - y
+        apart_m = np.sqrt(dx * dx + dy * dy)
+        if not is_apart and apart_m < least:
+            nearest, least = seen, apart_m
+    return nearest
+
+
+@loop
+def _were_together(people: People, silent: int, seen: int) -> bool:
+    together_s = (people.counts[SEEN_NS, silent] - people.counts[BORN_NS, seen]) / 1e9
+    return together_s > TOGETHER_S
+
+
+@loop
+def _inherit(people: People, row: int, heir: int) -> None:
+    """Somebody goes on in the heir's place; what a customer has been counts on."""
+    counts = people.counts
+    id, born_ns = counts[ID, row], counts[BORN_NS, row]
+    detections, called_ns = counts[DETECTIONS, row], counts[CALLED_NS, row]
+    was_confirmed = people.flags[CONFIRMED, row]
+    copy_person(people, heir, people, row)
+    counts[ID, row], counts[BORN_NS, row] = id, born_ns
+    counts[DETECTIONS, row] = max(counts[DETECTIONS, row], detections)
+    counts[CALLED_NS, row] = max(counts[CALLED_NS, row], called_ns)
+    if was_confirmed:
+        people.flags[CONFIRMED, row] = True

@@ -1,0 +1,80 @@
+"""Where do ranges to one person meet? Three sensors at once that know no bearing give a position.
+
+Least squares over the ranges. Two sensors, or a line of them, leave a second place, and a single
+range is a ring: those are left as they are, and correct whoever is tracked already.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats import chi2
+
+from tracker.containers import FloatArray, IntArray, Measurements, SensorKind
+
+#: Sensors are in line where they spread across no more than so large a share of that along.
+_IN_LINE = 0.1
+#: Ranges that fit worse in one of so many cases are taken for ranges to several people.
+_MEET = 0.9999
+
+
+def with_positions(measurements: Measurements) -> Measurements:
+    """The same measurements, ranges alone that meet as one position in place of the first.
+
+    Ranges that share `raised`, `person` and `identity` may meet.
+
+    Args:
+        measurements: M of them.
+    """
+    alone = measurements.kind == SensorKind.RANGE
+    if np.count_nonzero(alone) < 3:
+        return measurements
+    keys = np.stack([measurements.raised, measurements.person, measurements.identity], axis=1)
+    values, covariance = measurements.values.copy(), measurements.covariance.copy()
+    kind, keep = measurements.kind.copy(), np.ones(len(measurements), dtype=bool)
+    for key in np.unique(keys[alone], axis=0):
+        rows = np.flatnonzero(alone & (keys == key).all(axis=1))
+        met = _meeting_point(measurements, rows)
+        if met is not None:
+            values[rows[0]], covariance[rows[0]] = met
+            kind[rows[0]] = SensorKind.POSITION
+            keep[rows[1:]] = False
+    pose = np.where((kind == SensorKind.POSITION)[:, None], 0.0, measurements.sensor_pose)
+    joined = replace(
+        measurements, values=values, covariance=covariance, kind=kind, sensor_pose=pose
+    )
+    return joined[keep]
+
+
+def _meeting_point(
+    measurements: Measurements, rows: IntArray
+) -> tuple[FloatArray, FloatArray] | None:
+    """Position and covariance, shapes (2,) and (2, 2); None where the ranges do not meet."""
+    sensor_m, range_m = measurements.sensor_pose[rows, :2], measurements.values[rows, 1]
+    spread = np.linalg.svd(sensor_m - sensor_m.mean(axis=0), compute_uv=False)
+    if len(rows) < 3 or spread[1] <= _IN_LINE * spread[0]:
+        return None
+    doubt = measurements.sensor_pose_covariance[rows, 0, 0]
+    doubt = np.maximum(doubt, measurements.sensor_pose_covariance[rows, 1, 1])
+    std_m = np.sqrt(measurements.covariance[rows, 1, 1] + doubt)
+
+    def misfit(xy_m: FloatArray) -> FloatArray:
+        away_m = np.hypot(*(xy_m - sensor_m).T)
+        return np.asarray((away_m - range_m) / std_m)
+
+    solved = min(
+        (least_squares(misfit, start, method="lm") for start in _starts(sensor_m)),
+        key=lambda each: float(each.cost),
+    )
+    if 2.0 * solved.cost > chi2.ppf(_MEET, len(rows) - 2):
+        return None
+    return solved.x, np.linalg.inv(solved.jac.T @ solved.jac)
+
+
+def _starts(sensor_m: FloatArray) -> FloatArray:
+    """Around the middle of the sensors, so that one start is on the right side of each."""
+    reach_m = np.hypot(*(sensor_m - sensor_m.mean(axis=0)).T).max()
+    around = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    return np.asarray(sensor_m.mean(axis=0) + reach_m * around)

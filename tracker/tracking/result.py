@@ -1,0 +1,62 @@
+"""What does the outside see of everybody?"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.containers import IntArray, Tracks
+from tracker.containers.arrays import sealed, trusted
+from tracker.tracking.people import (
+    AGE_S,
+    CONFIRMED,
+    EXISTENCE,
+    HAND,
+    ID,
+    RAISED,
+    RAISED_SINCE_NS,
+    UNSEEN_S,
+)
+from tracker.tracking.renewal import Frame
+
+
+def customers_of(frame: Frame) -> IntArray | None:
+    """Rows of those who have called, by identity; None where that is everybody, in order."""
+    ids = frame.people.counts[ID].tolist()  # few numbers are compared faster one by one
+    if ids == sorted(ids) and (not ids or ids[0] > 0):
+        return None  # nearly always, without a scan
+    order = np.argsort(ids, kind="stable")
+    return order[np.count_nonzero(frame.people.counts[ID] <= 0) :]
+
+
+def tracks_of(frame: Frame, stamp_ns: int, rows: IntArray | None) -> Tracks:
+    """Some of the people of a frame, as `Tracks`; nobody is selected yet.
+
+    Args:
+        frame: After this instant.
+        stamp_ns: This frame's.
+        rows: Of people; None for all.
+    """
+    people = frame.people
+    counts, flags, spans = people.counts, people.flags, people.spans
+    mean, covariance = frame.mean[0], frame.covariance[0]
+    if rows is not None:
+        counts, flags, spans = counts[:, rows], flags[:, rows], spans[:, rows]
+        mean, covariance = mean[rows], covariance[rows]
+    counts, flags, spans = sealed(counts[:]), sealed(flags[:]), sealed(spans[:])
+    mean, covariance = sealed(mean[:]), sealed(covariance[:])
+    return trusted(
+        Tracks,
+        stamp_ns=stamp_ns,
+        id=counts[ID],
+        mean=mean,
+        covariance=covariance,
+        existence=spans[EXISTENCE],
+        confirmed=flags[CONFIRMED],
+        raised=flags[RAISED],
+        raised_since_ns=counts[RAISED_SINCE_NS],
+        age_s=spans[AGE_S],
+        unseen_s=spans[UNSEEN_S],
+        hand=counts[HAND],
+        selected_id=None,
+        refused=frame.refused,
+    )
