@@ -1,7 +1,6 @@
 """Known people: bounds from chi-square, at 99.9 %, not from the code."""
 
 import dataclasses
-import importlib.util
 
 import numpy as np
 import pytest
@@ -51,19 +50,6 @@ def test_figures_do_not_depend_on_the_size_of_the_batch(size):
     for name, values in whole.items():
         pieces = np.concatenate([part[name] for part in parts])
         np.testing.assert_allclose(pieces, values, rtol=1e-12, err_msg=name)
-
-
-@pytest.mark.skipif(
-    importlib.util.find_spec("numba") is None, reason="numba (the extra fast) is not installed"
-)
-def test_figures_are_the_same_with_and_without_numba():
-    config = default_config(CROWDED)
-    arrays, loop = (
-        known_people_rows(CROWDED, config, 3, 0, 50, compiled=compiled)
-        for compiled in (False, True)
-    )
-    for name, values in arrays.items():
-        np.testing.assert_allclose(loop[name], values, rtol=1e-9, atol=1e-12, err_msg=name)
 
 
 def test_clutter_and_misses_cost_identities():
