@@ -25,6 +25,9 @@ Associator: TypeAlias = Callable[[FloatArray], FloatArray]
 Predict: TypeAlias = Callable[[People, float, Settings, People], None]
 Associate: TypeAlias = Callable[[Pairs, int, int, Settings], tuple[IntArray, FloatArray]]
 
+#: Sums of probabilities may be off by so much, as those that an iteration ends at are.
+_ROUNDING = 1e-6
+
 
 def prediction_by(motion: MotionModel | None) -> Predict:
     """The tracker's own prediction, or the user's; see `PersonTracker`."""
@@ -52,10 +55,11 @@ def association_by(associator: Associator | None) -> Associate:
         log_odds = np.full((tracks, claims), -np.inf)
         log_odds[pairs.track, pairs.claim] = pairs.log_odds
         told = _checked("probabilities from `associate`", associator(log_odds), log_odds.shape)
-        if (told < 0.0).any() or (told.sum(axis=1) > 1.0 + 1e-9).any():
+        sums = *told.sum(axis=0), *told.sum(axis=1)
+        if (told < 0.0).any() or max(sums, default=0.0) > 1.0 + _ROUNDING:
             raise ShapeError(
-                "`associate` gave numbers that are no probabilities; each track's are wanted from "
-                "0 on, adding up to 1 at most."
+                "`associate` gave numbers that are no probabilities; each track's and each "
+                "measurement's are wanted from 0 on, adding up to 1 at most."
             )
         pair_of = np.full((tracks, claims), -1)
         pair_of[pairs.track, pairs.claim] = np.arange(len(pairs.track))
