@@ -171,12 +171,13 @@ class PersonTracker:
             ShapeError: `likeness` has another shape, or is infinite.
         """
         check_stamp(stamp_ns)
+        told = self._likeness(likeness, len(measurements))
         if self._stamp_ns is not None and stamp_ns < self._stamp_ns:
             self.reset()
+            told = NO_LIKENESS  # of those who are forgotten
         dt_s = 0.0 if self._stamp_ns is None else (stamp_ns - self._stamp_ns) / 1e9
         # Beyond the longest memory everybody is gone anyway; a day's gap must not overflow.
         dt_s = min(dt_s, 10.0 * max(self._config.delete_after_s, self._config.forget_after_s))
-        told = self._likeness(likeness, len(measurements))
         if likeness is None:  # whose columns are the measurements as they came
             measurements = with_positions(measurements)
         claims = claims_of(measurements, dt_s, self._config)
@@ -218,7 +219,9 @@ class PersonTracker:
         rows = slice(None) if customers is None else customers
         everybody = np.zeros((len(self.positions_m), measured))
         shape = everybody[rows].shape
-        told = np.nan_to_num(np.asarray(likeness, dtype=np.float64), nan=0.0, posinf=np.inf)
+        told = np.nan_to_num(
+            np.asarray(likeness, dtype=np.float64), nan=0.0, posinf=np.inf, neginf=-np.inf
+        )
         if told.shape != shape or not np.isfinite(told).all():
             raise ShapeError(
                 f"`likeness` has shape {told.shape}, or is infinite; needed are finite numbers of "
