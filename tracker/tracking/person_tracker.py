@@ -171,6 +171,7 @@ class PersonTracker:
             ShapeError: `likeness` has another shape, or is infinite.
         """
         check_stamp(stamp_ns)
+        stamp_ns = int(stamp_ns)  # NumPy has others, for which the frame was not compiled
         told = self._likeness(likeness, len(measurements))
         if self._stamp_ns is not None and stamp_ns < self._stamp_ns:
             self.reset()
@@ -189,7 +190,7 @@ class PersonTracker:
             view_numbers(view),
             view_numbers(scan_view),
             scan_view is not None,
-            camera_looked,
+            bool(camera_looked),
         )
         self._run(claims, instant, told)
         self._stamp_ns = stamp_ns
