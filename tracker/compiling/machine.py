@@ -52,9 +52,13 @@ class Machine:
         """Load what is compiled already, or let it be compiled in the background."""
         if self.code is not None or self._thread is not None:
             return
-        folder = files.folder()
-        if folder is not None and files.are_in(folder):
-            self.code = self._build(folder)
+        try:
+            folder = files.folder()
+            if folder is not None and files.are_in(folder):
+                self.code = self._build(folder)
+                return
+        except ImportError as error:
+            LOG.warning(_no_numba(error))
             return
         LOG.info("Compiling the tracker in the background, once on this machine.")
         self._thread = Thread(target=self._compile, args=(folder,), name="compiler", daemon=True)
@@ -67,11 +71,15 @@ class Machine:
         Args:
             say: Gets a sentence before the compiler runs, and one where its work cannot be kept.
         """
-        folder = files.folder()
-        if self.code is None:
-            if folder is None or not files.are_in(folder):
-                say("Compiling the tracker, once on this machine: a quarter of a minute ...")
-            self.code = self._build(folder)
+        try:
+            folder = files.folder()
+            if self.code is None:
+                if folder is None or not files.are_in(folder):
+                    say("Compiling the tracker, once on this machine: a quarter of a minute ...")
+                self.code = self._build(folder)
+        except ImportError as error:
+            say(_no_numba(error))
+            return
         trouble = files.trouble_with(folder)
         if trouble:
             say(_not_kept(trouble))
@@ -106,6 +114,10 @@ class Machine:
         self._leaves.set()
         if self._thread is not None:
             self._thread.join()
+
+
+def _no_numba(error: ImportError) -> str:
+    return f"numba is installed and cannot be loaded ({error}); Python tracks, slowly."
 
 
 def _not_kept(trouble: str) -> str:

@@ -100,6 +100,20 @@ def test_a_compiler_that_fails_is_said_and_python_goes_on(
     assert "no compiler today" in capfd.readouterr().err
 
 
+def test_a_numba_that_cannot_be_loaded_is_said_and_python_goes_on(folder, caplog):
+    def build(folder):
+        raise ImportError("Numba needs NumPy 2.2 or less")
+
+    folder.mkdir()
+    (folder / "function.nbi").touch()
+    machine, said = Machine(build), []
+    machine.start()
+    machine.finish(said.append)
+    assert machine.code is None
+    assert "Numba needs NumPy 2.2 or less" in caplog.text
+    assert "Numba needs NumPy 2.2 or less" in said[-1]
+
+
 def test_where_no_process_can_be_started_python_goes_on(
     small, folder, caplog, monkeypatch, wait_for_the_compiler
 ):

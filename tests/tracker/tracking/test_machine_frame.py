@@ -163,9 +163,22 @@ def test_a_program_that_ends_before_its_compiler_ends_at_once(needs_numba, tmp_p
     assert not list(tmp_path.rglob("*.nbi"))
 
 
-def test_without_numba_everything_runs_as_python():
-    blocked = "sys.modules.update(dict.fromkeys(['numba', 'llvmlite']))"
-    said, _ = run(before=blocked)
+#: Ways in which numba may not be there.
+BLOCKED = {
+    "no module": "sys.modules.update(dict.fromkeys(['numba', 'llvmlite']))",
+    "an importer that refuses": """
+class Nothing:
+    def find_spec(self, name, path=None, target=None):
+        if name in ("numba", "llvmlite"):
+            raise ModuleNotFoundError(name)
+sys.meta_path.insert(0, Nothing())
+""",
+}
+
+
+@pytest.mark.parametrize("before", BLOCKED.values(), ids=BLOCKED)
+def test_without_numba_everything_runs_as_python(before):
+    said, _ = run(before=before)
     assert said[1:] == ["Python [1]", "Python [1]"]
     assert said[0].startswith("WARNING numba cannot be used here")
 
