@@ -4,23 +4,11 @@ from __future__ import annotations
 
 from tracker.compiling.loops import loop
 from tracker.containers import FloatArray
+from tracker.tracking import people as field
 from tracker.tracking.claims import Claims
 from tracker.tracking.found import Found
 from tracker.tracking.life_cycle import BIRTH_EXISTENCE
-from tracker.tracking.people import (
-    BORN_NS,
-    CALLED_NS,
-    CONFIRMED,
-    EXISTENCE,
-    HAND,
-    ID,
-    MISSING_S,
-    RAISED,
-    RAISED_SINCE_NS,
-    SEEN_NS,
-    TAG,
-    People,
-)
+from tracker.tracking.people import People
 from tracker.tracking.settings import Settings
 
 
@@ -65,11 +53,13 @@ def begin_person(
     counts = room.counts
     for item in range(len(counts)):
         counts[item, row] = 0
-    counts[ID, row], counts[TAG, row] = id, claims.tag[claim]
-    counts[HAND, row], counts[RAISED_SINCE_NS, row] = claims.hand[claim], -1
-    counts[BORN_NS, row] = counts[SEEN_NS, row] = counts[CALLED_NS, row] = stamp_ns
-    room.spans[EXISTENCE, row], room.spans[MISSING_S, row] = BIRTH_EXISTENCE, 0.0
-    room.flags[RAISED, row] = room.flags[CONFIRMED, row] = False
+    counts[field.ID, row], counts[field.TAG, row] = id, claims.tag[claim]
+    counts[field.HAND, row], counts[field.RAISED_SINCE_NS, row] = claims.hand[claim], -1
+    counts[field.BORN_NS, row] = counts[field.SEEN_NS, row] = counts[field.CALLED_NS, row] = (
+        stamp_ns
+    )
+    room.spans[field.EXISTENCE, row], room.spans[field.MISSING_S, row] = BIRTH_EXISTENCE, 0.0
+    room.flags[field.RAISED, row] = room.flags[field.CONFIRMED, row] = False
     for age in range(room.recent.shape[1]):
         room.recent[row, age] = False
 

@@ -6,17 +6,8 @@ import numpy as np
 
 from tracker.compiling.loops import loop
 from tracker.containers import BoolArray, FloatArray
-from tracker.tracking.people import (
-    BORN_NS,
-    CALLED_NS,
-    CONFIRMED,
-    DETECTIONS,
-    ID,
-    MISSING_S,
-    SEEN_NS,
-    People,
-    copy_person,
-)
+from tracker.tracking import people as field
+from tracker.tracking.people import People, copy_person
 
 #: A track that has been silent for so long, beside a customer who is seen, is that customer.
 SILENT_S = 0.5
@@ -45,13 +36,15 @@ def merge_duplicates(
         distance_m: `same_person_distance_m`.
     """
     for silent in range(mean.shape[1]):
-        if certainty[silent] > 0.0 or people.counts[ID, silent] <= 0:
+        if certainty[silent] > 0.0 or people.counts[field.ID, silent] <= 0:
             continue
         seen = _nearest_duplicate(people, mean, certainty, silent, distance_m)
         if seen < 0:
             continue
-        is_customer = people.counts[ID, seen] > 0
-        is_older = not is_customer or people.counts[ID, silent] < people.counts[ID, seen]
+        is_customer = people.counts[field.ID, seen] > 0
+        is_older = (
+            not is_customer or people.counts[field.ID, silent] < people.counts[field.ID, seen]
+        )
         if is_older and keep[seen] and not _were_together(people, silent, seen):
             keep[seen] = False
             _inherit(people, silent, seen)
@@ -69,8 +62,8 @@ def _nearest_duplicate(
         if certainty[seen] == 0.0:
             continue
         is_apart = _were_together(people, silent, seen)
-        if people.counts[ID, seen] > 0:
-            is_apart = people.spans[MISSING_S, silent] <= SILENT_S
+        if people.counts[field.ID, seen] > 0:
+            is_apart = people.spans[field.MISSING_S, silent] <= SILENT_S
         x, y = people.mean[0, seen, 0], people.mean[0, seen, 1]
         if seen < mean.shape[1]:
             x, y = mean[0, seen, 0], mean[0, seen, 1]
@@ -83,7 +76,7 @@ def _nearest_duplicate(
 
 @loop
 def _were_together(people: People, silent: int, seen: int) -> bool:
-    together_s = (people.counts[SEEN_NS, silent] - people.counts[BORN_NS, seen]) / 1e9
+    together_s = (people.counts[field.SEEN_NS, silent] - people.counts[field.BORN_NS, seen]) / 1e9
     return together_s > TOGETHER_S
 
 
@@ -91,12 +84,12 @@ def _were_together(people: People, silent: int, seen: int) -> bool:
 def _inherit(people: People, row: int, heir: int) -> None:
     """Somebody goes on in the heir's place; what a customer has been counts on."""
     counts = people.counts
-    id, born_ns = counts[ID, row], counts[BORN_NS, row]
-    detections, called_ns = counts[DETECTIONS, row], counts[CALLED_NS, row]
-    was_confirmed = people.flags[CONFIRMED, row]
+    id, born_ns = counts[field.ID, row], counts[field.BORN_NS, row]
+    detections, called_ns = counts[field.DETECTIONS, row], counts[field.CALLED_NS, row]
+    was_confirmed = people.flags[field.CONFIRMED, row]
     copy_person(people, heir, people, row)
-    counts[ID, row], counts[BORN_NS, row] = id, born_ns
-    counts[DETECTIONS, row] = max(counts[DETECTIONS, row], detections)
-    counts[CALLED_NS, row] = max(counts[CALLED_NS, row], called_ns)
+    counts[field.ID, row], counts[field.BORN_NS, row] = id, born_ns
+    counts[field.DETECTIONS, row] = max(counts[field.DETECTIONS, row], detections)
+    counts[field.CALLED_NS, row] = max(counts[field.CALLED_NS, row], called_ns)
     if was_confirmed:
-        people.flags[CONFIRMED, row] = True
+        people.flags[field.CONFIRMED, row] = True

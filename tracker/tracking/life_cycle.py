@@ -10,21 +10,10 @@ import numpy as np
 
 from tracker.compiling.loops import loop
 from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.tracking import people as field
 from tracker.tracking.gating import Pairs
 from tracker.tracking.instant import Instant
-from tracker.tracking.people import (
-    BORN_NS,
-    CALLED_NS,
-    CONFIRMED,
-    DETECTIONS,
-    EXISTENCE,
-    ID,
-    MISSING_S,
-    RAISED,
-    RAISED_SINCE_NS,
-    SEEN_NS,
-    People,
-)
+from tracker.tracking.people import People
 from tracker.tracking.settings import Settings
 from tracker.tracking.streaks import step_streak
 
@@ -63,8 +52,8 @@ def fade(
         variance_m2 = (covariance[0, person, 0, 0] + covariance[0, person, 1, 1]) / 2.0
         lost = min(variance_m2 / LOST_STD_M**2, 1.0)
         lapse_s = dt_s * max(in_view[person], lost)
-        people.spans[EXISTENCE, person] *= np.exp(-lapse_s / delete_after_s)
-        people.spans[MISSING_S, person] += lapse_s
+        people.spans[field.EXISTENCE, person] *= np.exp(-lapse_s / delete_after_s)
+        people.spans[field.MISSING_S, person] += lapse_s
 
 
 @loop
@@ -80,7 +69,7 @@ def believe(people: People, chosen: IntArray, pairs: Pairs, chance: FloatArray) 
         pairs: P pairs.
         chance: Shape (N,): of being detected.
     """
-    existence = people.spans[EXISTENCE]
+    existence = people.spans[field.EXISTENCE]
     for person in range(len(chosen)):
         evidence = 0.0
         if chosen[person] >= 0:
@@ -114,11 +103,11 @@ def count_person(
     if instant.camera_looked or is_called:
         _count_image(people, person, is_called, instant.stamp_ns, settings)
     if certainty > 0.0:
-        people.counts[SEEN_NS, person] = instant.stamp_ns
+        people.counts[field.SEEN_NS, person] = instant.stamp_ns
         # What may well be somebody else's does not end a silence.
-        people.spans[MISSING_S, person] *= 1.0 - certainty
+        people.spans[field.MISSING_S, person] *= 1.0 - certainty
     if _is_convincing(people, person, is_called, settings):
-        people.flags[CONFIRMED, person] = True
+        people.flags[field.CONFIRMED, person] = True
 
 
 @loop
@@ -130,19 +119,19 @@ def _count_image(
     for age in range(recent.shape[1] - 1, 0, -1):
         recent[person, age] = recent[person, age - 1]
     recent[person, 0] = is_called
-    was_raised = flags[RAISED, person]
+    was_raised = flags[field.RAISED, person]
     step_streak(counts, flags, person, is_called, settings.raise_streak, settings.lower_streak)
     if is_called:
-        counts[DETECTIONS, person] += 1
-        counts[CALLED_NS, person] = stamp_ns
-    if flags[RAISED, person] and not was_raised:
-        counts[RAISED_SINCE_NS, person] = stamp_ns
+        counts[field.DETECTIONS, person] += 1
+        counts[field.CALLED_NS, person] = stamp_ns
+    if flags[field.RAISED, person] and not was_raised:
+        counts[field.RAISED_SINCE_NS, person] = stamp_ns
 
 
 @loop
 def _is_convincing(people: People, person: int, is_called: bool, settings: Settings) -> bool:
     if settings.confirms_by_existence > 0.0:
-        return is_called and people.spans[EXISTENCE, person] >= settings.confirm_existence
+        return is_called and people.spans[field.EXISTENCE, person] >= settings.confirm_existence
     detections = 0
     for age in range(people.recent.shape[1]):
         detections += people.recent[person, age]
@@ -158,18 +147,18 @@ def is_still_there(people: People, person: int, stamp_ns: int, settings: Setting
     detections, or once no hand has been up for `forget_after_s`. A bystander is remembered for as
     long as it has been seen before, and no longer than a customer.
     """
-    counts, missing_s = people.counts, people.spans[MISSING_S, person]
-    if counts[ID, person] <= 0:
-        known_s = (counts[SEEN_NS, person] - counts[BORN_NS, person]) / 1e9
+    counts, missing_s = people.counts, people.spans[field.MISSING_S, person]
+    if counts[field.ID, person] <= 0:
+        known_s = (counts[field.SEEN_NS, person] - counts[field.BORN_NS, person]) / 1e9
         return missing_s <= min(known_s, settings.delete_after_s) + _LAPSE_S
-    if not people.flags[CONFIRMED, person] and settings.confirms_by_existence == 0.0:
+    if not people.flags[field.CONFIRMED, person] and settings.confirms_by_existence == 0.0:
         return _may_be_confirmed(people.recent, person, settings.confirm_detections)
-    maturity = min(counts[DETECTIONS, person] / settings.mature_detections, 1.0)
+    maturity = min(counts[field.DETECTIONS, person] / settings.mature_detections, 1.0)
     is_alive = missing_s <= settings.delete_after_s * maturity + _LAPSE_S
-    unheard_s = (stamp_ns - counts[CALLED_NS, person]) / 1e9
+    unheard_s = (stamp_ns - counts[field.CALLED_NS, person]) / 1e9
     is_alive = is_alive and unheard_s <= settings.forget_after_s + _LAPSE_S
-    is_hopeful = people.spans[EXISTENCE, person] >= EXISTENCE_MIN
-    return is_alive and (people.flags[CONFIRMED, person] or is_hopeful)
+    is_hopeful = people.spans[field.EXISTENCE, person] >= EXISTENCE_MIN
+    return is_alive and (people.flags[field.CONFIRMED, person] or is_hopeful)
 
 
 @loop

@@ -11,6 +11,7 @@ from tracker.compiling.machine import Machine
 from tracker.config import Config
 from tracker.containers import FloatArray, Measurements, Tracks, View, check_stamp
 from tracker.containers.arrays import sealed
+from tracker.containers.multilateration import with_positions
 from tracker.errors import ShapeError
 from tracker.selection.selector import Selector
 from tracker.tracking.claims import Claims, claims_of
@@ -20,7 +21,6 @@ from tracker.tracking.instant import Instant
 from tracker.tracking.machine_frame import machine
 from tracker.tracking.modes import merge_modes
 from tracker.tracking.motion import modes_of
-from tracker.tracking.multilateration import with_positions
 from tracker.tracking.people import DETECTED, ID, MISSED, RAISED, room_for, with_room
 from tracker.tracking.reconfiguration import under
 from tracker.tracking.renewal import Frame

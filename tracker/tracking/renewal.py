@@ -8,6 +8,7 @@ import numpy as np
 
 from tracker.compiling.loops import loop, maker
 from tracker.containers import FloatArray
+from tracker.tracking import people as field
 from tracker.tracking.claims import Claims
 from tracker.tracking.duplicates import merge_duplicates
 from tracker.tracking.found import NOBODY, Found
@@ -15,18 +16,7 @@ from tracker.tracking.instant import Instant
 from tracker.tracking.life_cycle import count_person, is_still_there
 from tracker.tracking.modes import merge_modes
 from tracker.tracking.newcomers import let_in
-from tracker.tracking.people import (
-    AGE_S,
-    BORN_NS,
-    HAND,
-    ID,
-    SEEN_NS,
-    TAG,
-    UNSEEN_S,
-    People,
-    kept,
-    with_room,
-)
+from tracker.tracking.people import People, kept, with_room
 from tracker.tracking.settings import Settings
 
 
@@ -97,9 +87,12 @@ def renew(
     if stay < len(keep):
         room = kept(room, keep, stay)
     for person in range(stay):
-        age_ns = instant.stamp_ns - room.counts[BORN_NS, person]
-        unseen_ns = instant.stamp_ns - room.counts[SEEN_NS, person]
-        room.spans[AGE_S, person], room.spans[UNSEEN_S, person] = age_ns / 1e9, unseen_ns / 1e9
+        age_ns = instant.stamp_ns - room.counts[field.BORN_NS, person]
+        unseen_ns = instant.stamp_ns - room.counts[field.SEEN_NS, person]
+        room.spans[field.AGE_S, person], room.spans[field.UNSEEN_S, person] = (
+            age_ns / 1e9,
+            unseen_ns / 1e9,
+        )
     mean, covariance = np.empty((1, stay, 4)), np.empty((1, stay, 4, 4))
     merge_modes(room.weight, room.mean, room.covariance, mean[0], covariance[0])
     next_id, bystander = next_id + count - newcomers, bystander - (newcomers - known)
@@ -117,11 +110,11 @@ def _count_known(
     next_id = instant.next_id
     for row in range(len(found.owner)):
         if found.owner[row] >= 0 and claims.tag[row] >= 0:
-            people.counts[TAG, found.owner[row]] = claims.tag[row]
+            people.counts[field.TAG, found.owner[row]] = claims.tag[row]
     for person in range(len(found.hand)):
-        people.counts[HAND, person] = found.hand[person]
-        if found.is_called[person] and people.counts[ID, person] <= 0:
-            people.counts[ID, person] = next_id
+        people.counts[field.HAND, person] = found.hand[person]
+        if found.is_called[person] and people.counts[field.ID, person] <= 0:
+            people.counts[field.ID, person] = next_id
             next_id += 1
         count_person(
             people, person, found.is_called[person], found.certainty[person], instant, settings

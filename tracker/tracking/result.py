@@ -6,26 +6,17 @@ import numpy as np
 
 from tracker.containers import IntArray, Tracks
 from tracker.containers.arrays import sealed, trusted
-from tracker.tracking.people import (
-    AGE_S,
-    CONFIRMED,
-    EXISTENCE,
-    HAND,
-    ID,
-    RAISED,
-    RAISED_SINCE_NS,
-    UNSEEN_S,
-)
+from tracker.tracking import people as field
 from tracker.tracking.renewal import Frame
 
 
 def customers_of(frame: Frame) -> IntArray | None:
     """Rows of those who have called, by identity; None where that is everybody, in order."""
-    ids = frame.people.counts[ID].tolist()  # few numbers are compared faster one by one
+    ids = frame.people.counts[field.ID].tolist()  # few numbers are compared faster one by one
     if ids == sorted(ids) and (not ids or ids[0] > 0):
         return None  # nearly always, without a scan
     order = np.argsort(ids, kind="stable")
-    return order[np.count_nonzero(frame.people.counts[ID] <= 0) :]
+    return order[np.count_nonzero(frame.people.counts[field.ID] <= 0) :]
 
 
 def tracks_of(frame: Frame, stamp_ns: int, rows: IntArray | None) -> Tracks:
@@ -47,16 +38,16 @@ def tracks_of(frame: Frame, stamp_ns: int, rows: IntArray | None) -> Tracks:
     return trusted(
         Tracks,
         stamp_ns=stamp_ns,
-        id=counts[ID],
+        id=counts[field.ID],
         mean=mean,
         covariance=covariance,
-        existence=spans[EXISTENCE],
-        confirmed=flags[CONFIRMED],
-        raised=flags[RAISED],
-        raised_since_ns=counts[RAISED_SINCE_NS],
-        age_s=spans[AGE_S],
-        unseen_s=spans[UNSEEN_S],
-        hand=counts[HAND],
+        existence=spans[field.EXISTENCE],
+        confirmed=flags[field.CONFIRMED],
+        raised=flags[field.RAISED],
+        raised_since_ns=counts[field.RAISED_SINCE_NS],
+        age_s=spans[field.AGE_S],
+        unseen_s=spans[field.UNSEEN_S],
+        hand=counts[field.HAND],
         selected_id=None,
         refused=frame.refused,
     )

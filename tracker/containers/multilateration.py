@@ -12,7 +12,9 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import chi2
 
-from tracker.containers import FloatArray, IntArray, Measurements, SensorKind
+from tracker.containers.arrays import FloatArray, IntArray
+from tracker.containers.measurements import Measurements
+from tracker.containers.sensor_kind import SensorKind
 
 #: Sensors are in line where they spread across no more than so large a share of that along.
 _IN_LINE = 0.1

@@ -7,7 +7,7 @@ import pytest
 
 from tracker import Measurements, PersonTracker
 from tracker.containers import SensorKind
-from tracker.tracking.multilateration import with_positions
+from tracker.containers.multilateration import with_positions
 
 ANCHORS_M = np.array([[0.0, 0.0], [6.0, 0.0], [3.0, 5.0]])
 
