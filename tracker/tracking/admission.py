@@ -10,7 +10,7 @@ from tracker.compiling.loops import loop, maker, step
 from tracker.containers import BoolArray, FloatArray, IntArray
 from tracker.tracking.claims import Claims
 from tracker.tracking.people import RAISED, People
-from tracker.tracking.sensor_kinds import BEARING, BEARING_RANGE, RANGE, begin
+from tracker.tracking.sensor_kinds import BEARING, BEARING_RANGE, KINDS, RANGE, begin
 from tracker.tracking.settings import Settings
 
 #: A hand that is up may be so far from where its owner is expected (guess).
@@ -70,7 +70,7 @@ def _fill_round(
 ) -> int:
     """Take all of a claim's sensor into its round, those of one kind side by side."""
     begin = filled
-    for kind in range(4):
+    for kind in range(KINDS):
         for row in range(leader, len(is_left)):
             is_mine = is_left[row] and claims.kind[row] == kind
             is_mine = is_mine and claims.raised[row] == claims.raised[leader]

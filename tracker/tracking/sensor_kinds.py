@@ -21,6 +21,7 @@ from tracker.tracking.settings import Settings
 
 BEARING_RANGE, POSITION = int(SensorKind.BEARING_RANGE), int(SensorKind.POSITION)
 BEARING, RANGE = int(SensorKind.BEARING), int(SensorKind.RANGE)
+KINDS = len(SensorKind)
 #: Nearer than this to the sensor a bearing turns too fast to be linear.
 RANGE_FLOOR_M = 0.1
 _TURN = 2.0 * np.pi

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tracker import Config, Measurements
+from tracker.containers import SensorKind
 from tracker.tracking.admission import CALLER_REACH_M, plan_rounds
 from tracker.tracking.claims import claims_of
 from tracker.tracking.people import RAISED
@@ -68,6 +69,16 @@ def test_who_measures_from_elsewhere_may_show_the_same_hand(rounds_of):
     here = Measurements.polar(0.0, 2.0, 0.02, 0.1)
     there = Measurements.polar(np.pi, 2.0, 0.02, 0.1, (4.0, 0.0, 0.0))
     assert rounds_of(Measurements.concatenate(here, there))[0] == [[0], [1]]
+
+
+@pytest.mark.parametrize("raised", [True, False])
+def test_every_kind_of_sensor_comes_in_once(rounds_of, raised):
+    measured = Measurements.concatenate(
+        Measurements.polar([0.0, 0.5, np.nan], [2.0, np.nan, 2.0], 0.02, 0.1, raised=raised),
+        Measurements.cartesian([5.0, 5.0], np.eye(2), raised=raised),
+    )
+    assert set(measured.kind.tolist()) == set(SensorKind)
+    assert sorted(chain(*rounds_of(measured)[0])) == [0, 1, 2, 3]
 
 
 def test_hands_far_apart_all_count(counted):
