@@ -204,7 +204,7 @@ def fetch_models_if_needed(console: Console) -> None:
 
 
 def compile_tracker_first(console: Console) -> None:
-    """Compile the tracker before the work, and say so where that takes a minute."""
+    """Compile the tracker before the work, and say so where that takes a while."""
     from tracker.tracking.machine_frame import compile_tracker
 
     def say(text: str) -> None:

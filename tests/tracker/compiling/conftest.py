@@ -28,7 +28,7 @@ def fail(folder):
 @pytest.fixture
 def small(tmp_path, monkeypatch):
     """Makes the module, which other processes find as well."""
-    pytest.importorskip("numba", reason="numba (the extra fast) is not installed")
+    pytest.importorskip("numba", reason="numba is not installed")
     names = []
 
     def module(factor=2.0):

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-pytest.importorskip("numba", reason="numba (the extra fast) is not installed")
+pytest.importorskip("numba", reason="numba is not installed")
 
 
 def hits(function):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("numba", reason="numba (the extra fast) is not installed")
+pytest.importorskip("numba", reason="numba is not installed")
 
 from tracker.compiling import files
 
