@@ -150,7 +150,7 @@ def a_track():
         **{
             name: values.get(name, fill(getattr(none, name)))
             for name in none.__dataclass_fields__
-            if name not in ("stamp_ns", "selected_id")
+            if name not in ("stamp_ns", "selected_id", "refused")
         },
         stamp_ns=STAMP_NS,
         selected_id=7,

@@ -93,12 +93,12 @@ class Room:
         return measured
 
 
-def assert_same(mine, theirs):
+def assert_same(mine, theirs, atol=1e-9):
     for name in ("id", "confirmed", "raised", "raised_since_ns", "hand", "refused", "selected_id"):
         np.testing.assert_array_equal(getattr(mine, name), getattr(theirs, name), name)
     for name in ("mean", "covariance", "existence", "age_s", "unseen_s"):
         one, other = getattr(mine, name), getattr(theirs, name)
-        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9, err_msg=name)
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=atol, err_msg=name)
 
 
 @pytest.mark.parametrize("seed", range(25))
@@ -124,13 +124,14 @@ def test_a_room_full_of_people_is_tracked_to_the_same_numbers(seed):
             "camera_looked": bool(rng.random() < 0.9),
         }
         if rng.random() < 0.2:
-            customers = compiled.people.id > 0
+            customers = compiled.people.customer
             given["likeness"] = rng.normal(size=(np.count_nonzero(customers), len(measured)))
         both = [
             tracker.step(stamp_ns, measured, pose[:2], **given) for tracker in (compiled, plain)
         ]
-        assert_same(*both)
-        assert_same(compiled.people, plain.people)
+        rounding = 1e-9 if room.far_m == 0.0 else 1e-6  # of places, which speeds are made of
+        assert_same(*both, rounding)
+        assert_same(compiled.people, plain.people, rounding)
         for tracker in (compiled, plain):
             if number in happens:
                 changes[number](tracker)
