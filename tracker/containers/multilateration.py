@@ -66,17 +66,18 @@ def _meeting_point(
         away_m = np.hypot(*(xy_m - sensor_m).T)
         return np.asarray((away_m - range_m) / std_m)
 
-    solved = min(
-        (least_squares(misfit, start, method="lm") for start in _starts(sensor_m)),
-        key=lambda each: float(each.cost),
-    )
+    solved = least_squares(misfit, _first_guess(sensor_m, range_m), method="lm")
     if 2.0 * solved.cost > chi2.ppf(_MEET, len(rows) - 2):
         return None
     return solved.x, np.linalg.inv(solved.jac.T @ solved.jac)
 
 
-def _starts(sensor_m: FloatArray) -> FloatArray:
-    """Around the middle of the sensors, so that one start is on the right side of each."""
-    reach_m = np.hypot(*(sensor_m - sensor_m.mean(axis=0)).T).max()
-    around = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
-    return np.asarray(sensor_m.mean(axis=0) + reach_m * around)
+def _first_guess(sensor_m: FloatArray, range_m: FloatArray) -> FloatArray:
+    """Where the circles' differences from the first one meet, which are straight lines:
+
+        2 (s_i - s_0)' x = |s_i|^2 - |s_0|^2 - (r_i^2 - r_0^2),    with s_0 at the origin.
+    """
+    apart_m = sensor_m[1:] - sensor_m[0]
+    right = (apart_m**2).sum(axis=1) - range_m[1:] ** 2 + range_m[0] ** 2
+    solved, *_ = np.linalg.lstsq(2.0 * apart_m, right, rcond=None)
+    return np.asarray(sensor_m[0] + solved)
