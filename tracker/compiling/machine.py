@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import atexit
 import logging
+import os
 import subprocess
 import sys
 import tempfile
@@ -94,8 +95,9 @@ class Machine:
             build = self._build
             names = (build.__module__, build.__name__)
             command = [sys.executable, "-c", _COMPILE, *names, str(place)]
+            paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
             try:
-                compiler = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+                compiler = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=paths)
             except OSError as error:
                 LOG.warning("No compiler can be started (%s); Python tracks, slowly.", error)
                 return
