@@ -47,7 +47,7 @@ def _register_loops() -> None:
 @cache
 def _register(function: Callable[..., Any], **options: bool) -> None:
     # Without ways in from Python the compiler has a third less to do.
-    ways_in = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    ways_in = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "no_rewrites": True}
     register_jitable(error_model="numpy", **ways_in, **options)(function)
 
 

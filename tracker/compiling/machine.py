@@ -51,6 +51,19 @@ class Machine:
 
     def start(self) -> None:
         """Load what is compiled already, or let it be compiled in the background."""
+        self._begin(LOG.info, LOG.warning)
+
+    def finish(self, say: Callable[[str], None]) -> None:
+        """Load what is compiled already, or compile it now.
+
+        Args:
+            say: Gets a sentence before the compiler runs, and one where its work cannot be kept.
+        """
+        self._begin(say, say)
+        if self._thread is not None:
+            self._thread.join()
+
+    def _begin(self, say: Callable[[str], None], warn: Callable[[str], None]) -> None:
         if self.code is not None or self._thread is not None:
             return
         try:
@@ -59,45 +72,33 @@ class Machine:
                 self.code = self._build(folder)
                 return
         except ImportError as error:
-            LOG.warning(_no_numba(error))
+            warn(f"numba is installed and cannot be loaded ({error}); Python tracks, slowly.")
             return
-        LOG.info("Compiling the tracker in the background, once on this machine.")
+        say("Compiling the tracker, once on this machine: a quarter of a minute ...")
+        trouble = files.trouble_with(folder)
+        if trouble:
+            warn(
+                f"The compiled tracker cannot be kept ({trouble}), so that every start compiles "
+                "it; set NUMBA_CACHE_DIR to a folder that may be written."
+            )
+            folder = None
         self._thread = Thread(target=self._compile, args=(folder,), name="compiler", daemon=True)
         self._thread.start()
         atexit.register(self._leave)
 
-    def finish(self, say: Callable[[str], None]) -> None:
-        """Load what is compiled already, or compile it now.
-
-        Args:
-            say: Gets a sentence before the compiler runs, and one where its work cannot be kept.
-        """
-        try:
-            folder = files.folder()
-            if self.code is None:
-                if folder is None or not files.are_in(folder):
-                    say("Compiling the tracker, once on this machine: a quarter of a minute ...")
-                self.code = self._build(folder)
-        except ImportError as error:
-            say(_no_numba(error))
-            return
-        trouble = files.trouble_with(folder)
-        if trouble:
-            say(_not_kept(trouble))
-
     def _compile(self, folder: Path | None) -> None:
         """Let a process of its own compile, then load what it left."""
-        trouble = files.trouble_with(folder)
-        if trouble:
-            LOG.warning(_not_kept(trouble))
         with tempfile.TemporaryDirectory(prefix="raised-hand-") as elsewhere:
-            place = Path(elsewhere) if trouble or folder is None else folder
+            place = folder or Path(elsewhere)
             build = self._build
             names = (build.__module__, build.__name__)
             command = [sys.executable, "-c", _COMPILE, *names, str(place)]
-            paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+            # More optimization costs time and gains none: nearly all is scalar arithmetic.
+            around = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_OPT": "1"}
             try:
-                compiler = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=paths)
+                compiler = subprocess.Popen(
+                    command, stdout=subprocess.DEVNULL, env={**os.environ, **around}
+                )
             except OSError as error:
                 LOG.warning("No compiler can be started (%s); Python tracks, slowly.", error)
                 return
@@ -116,14 +117,3 @@ class Machine:
         self._leaves.set()
         if self._thread is not None:
             self._thread.join()
-
-
-def _no_numba(error: ImportError) -> str:
-    return f"numba is installed and cannot be loaded ({error}); Python tracks, slowly."
-
-
-def _not_kept(trouble: str) -> str:
-    return (
-        f"The compiled tracker cannot be kept ({trouble}), so that every start compiles it; "
-        "set NUMBA_CACHE_DIR to a folder that may be written."
-    )
