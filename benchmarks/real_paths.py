@@ -32,12 +32,12 @@ from rich.console import Console
 from rich.progress import track
 
 from tracker import Config, Tracks
-from tracker.containers import FloatArray, Truth
+from tracker.containers import FloatArray, IntArray, Truth
 from tracker.errors import SceneError
 from tracker.evaluation.metrics.consistency import normalized_squared
 from tracker.evaluation.metrics.gospa import gospa
 from tracker.evaluation.metrics.identity import identity_switches
-from tracker.evaluation.metrics.matching import Matcher
+from tracker.evaluation.metrics.matching import distances, match_best
 from tracker.evaluation.studies.workers import Processes, run_in_order
 from tracker.evaluation.trials.people_scene import PeopleScene, draw_scene
 from tracker.evaluation.trials.people_sensing import Sensed, sense
@@ -87,9 +87,9 @@ def draw_window(scenario: PeopleScenario, rng: np.random.Generator) -> list[tupl
     """
     for _ in range(TRIES):
         scene = place_robot(draw_scene(scenario, rng), scenario.field_of_view_deg, rng)
-        if scene.xy_m.shape[1] >= PEOPLE_MIN:
-            frames = sense(scenario, scene, rng)
-            return [(scene.truth(row), in_reach(sensed)) for row, sensed in enumerate(frames)]
+        if scene.truth.xy_m.shape[1] >= PEOPLE_MIN:
+            frames = zip(scene.truth, sense(scenario, scene, rng), strict=True)
+            return [(truth, in_reach(sensed)) for truth, sensed in frames]
     raise SceneError(f"{scenario.recording}: no piece with {PEOPLE_MIN} people near one place.")
 
 
@@ -100,26 +100,27 @@ def place_robot(
 
     Whoever is beyond reach is not there.
     """
-    seen = scene.xy_m[np.isfinite(scene.xy_m[..., 0])]
+    truth = scene.truth
+    seen = truth.xy_m[np.isfinite(truth.xy_m[..., 0])]
     if len(seen) == 0:
         return scene
     places = rng.uniform(*np.quantile(seen, [0.02, 0.98], axis=0), (PLACES, 2))
     distance = np.linalg.norm(seen[:, None] - places, axis=-1)
     worth = ((distance > NEAR_M[0]) & (distance < NEAR_M[1])).sum(axis=0)
     worth -= 20 * (distance < WALKED_THROUGH_M).sum(axis=0)
-    xy = scene.xy_m - places[worth.argmax()]
+    xy = truth.xy_m - places[worth.argmax()]
     xy[~(np.linalg.norm(xy, axis=-1) < REACH_M)] = np.nan
     kept = np.isfinite(xy[..., 0]).any(axis=0)
     xy = xy[:, kept]
     bearing = normalize_angle(np.arctan2(xy[..., 1], xy[..., 0]) - scene.robot_yaw_rad[:, None])
-    return replace(
-        scene,
+    truth = replace(
+        truth,
+        id=truth.id[kept],
         xy_m=xy,
-        shown_xy_m=xy,
-        hand_up=scene.hand_up[:, kept],
-        hand_side=scene.hand_side[kept],
+        hand_up=truth.hand_up[:, kept],
         in_view=np.abs(bearing) <= np.deg2rad(field_of_view_deg / 2),
     )
+    return replace(scene, truth=truth, shown_xy_m=xy, hand_side=scene.hand_side[kept])
 
 
 def in_reach(sensed: Sensed) -> Sensed:
@@ -136,7 +137,7 @@ class Scores:
     """One tracker's figures in one window, of customers (whose hand has been up) alone."""
 
     def __init__(self) -> None:
-        self._matcher = Matcher(CUTOFF_M)
+        self._pairs: dict[int, int] = {}  # of the last frame: each person's track
         self._called: set[int] = set()
         self._last_there: dict[int, tuple[int, float]] = {}  # each person's last frame, and range
         self._stamps_ns: list[int] = []
@@ -152,16 +153,27 @@ class Scores:
         called = np.isin(truth.id, list(self._called))
         person, person_xy, track_xy = truth.id[called], truth.xy_m[called], tracks.mean[:, :2]
         self._score_sets(tracks, person_xy)
-        rows, columns = self._matcher.match(tracks.id, track_xy, person, person_xy)
-        pairs = zip(person[columns].tolist(), tracks.id[rows].tolist(), strict=True)
+        self._pairs = self._match(tracks.id, track_xy, person, person_xy)
         for one, range_m in zip(person.tolist(), np.linalg.norm(person_xy, axis=1), strict=True):
             self._last_there[one] = len(self._stamps_ns), range_m
         self._stamps_ns.append(truth.stamp_ns)
-        self._track_of.append(dict(pairs))
+        self._track_of.append(self._pairs)
         apart = np.linalg.norm(track_xy[:, None] - truth.xy_m, axis=-1)
         alone = apart.min(axis=1, initial=np.inf) > CUTOFF_M
         range_m = np.linalg.norm(track_xy, axis=1)[alone]
         self._alone.append(dict(zip(tracks.id[alone].tolist(), range_m.tolist(), strict=True)))
+
+    def _match(
+        self, track_id: IntArray, track_xy: FloatArray, person: IntArray, person_xy: FloatArray
+    ) -> dict[int, int]:
+        """As the CLEAR MOT metrics: who stood for somebody near goes on, the rest by distance."""
+        gain = np.maximum(CUTOFF_M - distances(track_xy[None], person_xy[None])[0], 0.0)
+        last = np.array([self._pairs.get(one, 0) for one in person.tolist()], dtype=np.int64)
+        kept = (track_id[:, None] == last) & (gain > 0.0)
+        taken = kept.any(axis=1, keepdims=True) | kept.any(axis=0, keepdims=True)
+        pairs = kept | match_best(np.where(taken, 0.0, gain)[None])[0]
+        row, column = np.nonzero(pairs)
+        return dict(zip(person[column].tolist(), track_id[row].tolist(), strict=True))
 
     def _score_sets(self, tracks: Tracks, person_xy: FloatArray) -> None:
         """The frame's best pairs; a pair counts where its person does."""
