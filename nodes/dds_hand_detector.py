@@ -232,14 +232,15 @@ def command(
     """
     from rich.console import Console
 
-    from tracker.progress import compile_tracker_first, fetch_models_if_needed
+    from tracker.progress import fetch_models_if_needed, telling
+    from tracker.tracking.machine_frame import begin_compiling
 
     name = Names(NODE_NAME, namespace, remap or ()).full_node_name
     remarks: list[str] = []
     config, sim_time = _parameters(params_file or [], param or [], name, remarks.append)
     errors = Console(stderr=True)
     fetch_models_if_needed(errors)
-    compile_tracker_first(errors)
+    begin_compiling(telling(errors), telling(errors))
     with _stop_signals() as stop:
         node = DdsHandDetector(
             config,

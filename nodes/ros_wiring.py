@@ -43,7 +43,7 @@ from nodes.topics import (
 from tracker.config import Config
 from tracker.errors import TrackerError
 from tracker.messages import Encoded
-from tracker.tracking.machine_frame import compile_tracker
+from tracker.tracking.machine_frame import begin_compiling
 
 _CLASSES = {
     f"{package}/msg/{kind.__name__}": kind
@@ -140,7 +140,8 @@ class RosWiring:
             self._node.destroy_publisher(publisher)
 
     def _make_core(self, config: Config) -> NodeCore:
-        compile_tracker(self._node.get_logger().info)
+        log = self._node.get_logger()
+        begin_compiling(log.info, log.warning)
         return NodeCore(
             config,
             publish=self._publish,

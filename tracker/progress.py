@@ -207,8 +207,14 @@ def compile_tracker_first(console: Console) -> None:
     """Compile the tracker before the work, and say so where that takes a while."""
     from tracker.tracking.machine_frame import compile_tracker
 
+    with console.status("Loading the tracker"):
+        compile_tracker(telling(console))
+
+
+def telling(console: Console) -> Callable[[str], None]:
+    """Sentences on a console, as they are."""
+
     def say(text: str) -> None:
         console.print(text, highlight=False, markup=False, soft_wrap=True)
 
-    with console.status("Loading the tracker"):
-        compile_tracker(say)
+    return say

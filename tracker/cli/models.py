@@ -28,17 +28,20 @@ def models_fetch(
 ) -> None:
     """Take the hand and pose models from their PyPI wheel and convert them to ONNX.
 
+    Then the tracker is compiled, so that the first start on this machine need not.
+
     For a robot without a network: fetch with --to on another machine, copy the folder, and set the
     environment variable RAISED_HAND_MODELS to it.
     """
     from tracker.perception.models import ModelStore, fetch_models
-    from tracker.progress import fetch_progress
+    from tracker.progress import compile_tracker_first, fetch_progress
 
     store = ModelStore(to)
     check_inputs_stay([source], [row.path for row in store.status()])
     with fetch_progress(errors) as progress:
         fetch_models(store, source, progress)
     console.print(f"models are in {store.directory}", highlight=False, soft_wrap=True)
+    compile_tracker_first(errors)
 
 
 def models_list(as_json: JsonOption = False) -> None:

@@ -49,21 +49,15 @@ class Machine:
         self._thread: Thread | None = None
         self._leaves = Event()
 
-    def start(self) -> None:
-        """Load what is compiled already, or let it be compiled in the background."""
-        self._begin(LOG.info, LOG.warning)
-
-    def finish(self, say: Callable[[str], None]) -> None:
-        """Load what is compiled already, or compile it now.
+    def start(
+        self, say: Callable[[str], None] = LOG.info, warn: Callable[[str], None] = LOG.warning
+    ) -> None:
+        """Load what is compiled already, or let it be compiled in the background.
 
         Args:
-            say: Gets a sentence before the compiler runs, and one where its work cannot be kept.
+            say: Gets a sentence before the compiler runs.
+            warn: Gets one where its work cannot be kept, or numba not be loaded.
         """
-        self._begin(say, say)
-        if self._thread is not None:
-            self._thread.join()
-
-    def _begin(self, say: Callable[[str], None], warn: Callable[[str], None]) -> None:
         if self.code is not None or self._thread is not None:
             return
         try:
@@ -85,6 +79,16 @@ class Machine:
         self._thread = Thread(target=self._compile, args=(folder,), name="compiler", daemon=True)
         self._thread.start()
         atexit.register(self._leave)
+
+    def finish(self, say: Callable[[str], None]) -> None:
+        """Load what is compiled already, or compile it now.
+
+        Args:
+            say: Gets a sentence before the compiler runs, and one where its work cannot be kept.
+        """
+        self.start(say, say)
+        if self._thread is not None:
+            self._thread.join()
 
     def _compile(self, folder: Path | None) -> None:
         """Let a process of its own compile, then load what it left."""

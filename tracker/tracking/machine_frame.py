@@ -92,6 +92,13 @@ def machine() -> Machine | None:
     return Machine(compiled_frame)
 
 
+def begin_compiling(say: Callable[[str], None], warn: Callable[[str], None]) -> None:
+    """Load the compiled frame, or let it be compiled while frames run as Python; see `Machine`."""
+    compiler = machine()
+    if compiler is not None:
+        compiler.start(say, warn)
+
+
 def compile_tracker(say: Callable[[str], None]) -> None:
     """Load the compiled frame, or compile it now, so that no frame is slow.
 
