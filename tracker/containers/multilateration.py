@@ -74,9 +74,9 @@ def _meeting_point(
 
 
 def _first_guess(sensor_m: FloatArray, range_m: FloatArray) -> FloatArray:
-    """Where the circles' differences from the first one meet, which are straight lines:
+    """Where the circles' differences from the first one meet, which are straight lines.
 
-    2 (s_i - s_0)' x = |s_i|^2 - |s_0|^2 - (r_i^2 - r_0^2),    with s_0 at the origin.
+    With s_0 at the origin: 2 (s_i - s_0)' x = |s_i|^2 - |s_0|^2 - (r_i^2 - r_0^2).
     """
     apart_m = sensor_m[1:] - sensor_m[0]
     right = (apart_m**2).sum(axis=1) - range_m[1:] ** 2 + range_m[0] ** 2
