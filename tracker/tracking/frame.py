@@ -104,11 +104,9 @@ def _chance(
     """Shape (N,): of being detected in one round."""
     chance = np.empty(len(visible))
     for person in range(len(visible)):
-        again = 1.0
-        if is_raised and people.counts[MISSED, person] > 0:
-            again = RAISES_AGAIN
-        visible_again = visible[person] * again
-        chance[person] = max(visible_again * settings.detection_probability, DETECTION_MIN)
+        again = RAISES_AGAIN if is_raised and people.counts[MISSED, person] > 0 else 1.0
+        likely = visible[person] * again * settings.detection_probability
+        chance[person] = max(likely, DETECTION_MIN)
     return chance
 
 
