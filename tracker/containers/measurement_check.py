@@ -85,12 +85,17 @@ def are_ordinary(known: FloatArray, std: FloatArray, sensor_pose: FloatArray) ->
         return True
     range_m, noise = known[:, 1], std.ravel()
     return bool(
-        np.vdot(known, known) < ABSURD_M**2
-        and np.vdot(sensor_pose, sensor_pose) < ABSURD_M**2
+        _sum_of_squares(known) < ABSURD_M**2
+        and _sum_of_squares(sensor_pose) < ABSURD_M**2
         and range_m[range_m.argmin()] >= 0.0
         and noise[noise.argmin()] > _ORDINARY_STD_MIN
         and noise[noise.argmax()] < _ORDINARY_STD_MAX
     )
+
+
+def _sum_of_squares(numbers: FloatArray) -> float:
+    # Of more numbers BLAS would wake up threads, which takes milliseconds.
+    return float(np.vdot(numbers, numbers) if numbers.size < 10_000 else np.square(numbers).sum())
 
 
 def _are_plain(claims: Measurements) -> bool:
@@ -111,10 +116,10 @@ def _are_plain(claims: Measurements) -> bool:
             return False
         values = np.where(absent, 0.0, values)
     return bool(
-        np.vdot(values, values) < ABSURD_M**2  # and so there is no NaN left
+        _sum_of_squares(values) < ABSURD_M**2  # and so there is no NaN left
         and (kinds == _POSITIONS or min(values[:, 1].tolist()) >= 0.0)
-        and np.vdot(claims.sensor_pose, claims.sensor_pose) < ABSURD_M**2
-        and np.vdot(noise, noise) < BEARING_VARIANCE_MAX**2
+        and _sum_of_squares(claims.sensor_pose) < ABSURD_M**2
+        and _sum_of_squares(noise) < BEARING_VARIANCE_MAX**2
         and noise[:, ::3].min() > VARIANCE_MIN
         and (np.count_nonzero(noise[:, 1:3]) == 0 or _are_definite(noise, bool(alone)).all())
         and not (alone and np.count_nonzero(noise[:, ::3][absent] != 1.0))
