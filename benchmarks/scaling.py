@@ -47,7 +47,7 @@ def dask(count: int) -> Iterator[Executor]:
 
 def enough_trials(scenario: str, seconds: float) -> int:
     """As many as one process runs in about that time, and two can share."""
-    least = 4 if scenario == "people" else 500
+    least = 40 if scenario == "people" else 500
     monte_carlo(scenario, 2)  # compiles
     begin_s = time.perf_counter()
     monte_carlo(scenario, least)

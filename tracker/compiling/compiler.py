@@ -26,15 +26,17 @@ def compiled(function: Callable[..., Any], signature: Any, folder: Path | None) 
 
     Args:
         function: Plain; what it calls is decorated as `loops` says.
-        signature: Numba's. Said beforehand, so that no array ever leads to another compilation.
+        signature: Numba's. Said beforehand, so that no array ever leads to another compilation;
+            None compiles when it is called, for what it is given.
         folder: Where it is taken from, or kept; None keeps it nowhere.
     """
     _register_loops()
     dispatcher = njit(error_model="numpy")(function)
     if folder is not None:
         dispatcher._cache = _cache_in(folder)(function)
-    dispatcher.compile(signature)
-    dispatcher.disable_compile()
+    if signature is not None:
+        dispatcher.compile(signature)
+        dispatcher.disable_compile()
     return dispatcher
 
 

@@ -42,7 +42,7 @@ class Claims(NamedTuple):
     tag: IntArray
 
 
-def claims_of(measurements: Measurements, dt_s: float, config: Config) -> Claims:
+def claims_of(measurements: Measurements, dt_s: float | FloatArray, config: Config) -> Claims:
     """Measurements for the loops, bearings of raised hands with honest noise.
 
     A raised hand stands beside the body, to the same side for as long as it is up. Errors with the
@@ -52,13 +52,14 @@ def claims_of(measurements: Measurements, dt_s: float, config: Config) -> Claims
 
     Args:
         measurements: M of them.
-        dt_s: Since the last frame.
+        dt_s: Since the last frame; shape (M,) for measurements of several frames.
         config: `hand_bias_duration_s`; 0 changes nothing.
     """
     noise = measurements.covariance
     if config.hand_bias_duration_s > 0.0:
         alone = measurements.raised & (measurements.kind == SensorKind.BEARING)
-        alike = np.exp(-max(dt_s, _INTERVAL_MIN_S) / config.hand_bias_duration_s)
+        alike = np.exp(-np.maximum(dt_s, _INTERVAL_MIN_S) / config.hand_bias_duration_s)
+        alike = np.broadcast_to(alike, alone.shape)[alone]
         noise = noise.copy()
         wider = noise[alone, 0, 0] * (1.0 + alike) / (1.0 - alike)
         noise[alone, 0, 0] = np.minimum(wider, _BEARING_VARIANCE_MAX)

@@ -62,7 +62,7 @@ class TruthFrames:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrackFrames:
-    """The confirmed customers over T frames; each frame fills its columns from the left.
+    """The confirmed customers over T frames; columns fill from the left, by identity.
 
     Attributes:
         id: Shape (T, N); 0 where there is nobody.
@@ -105,6 +105,7 @@ class TrackFrames:
             covariance_m2: Shape (R, 2, 2).
             raised: Shape (R,).
         """
+        order = np.lexsort((track_id, np.repeat(np.arange(len(count)), count)))
         is_filled = np.arange(count.max(initial=0)) < count[:, None]
         frames = TrackFrames(
             np.zeros(is_filled.shape, dtype=np.int64),
@@ -112,8 +113,8 @@ class TrackFrames:
             np.zeros((*is_filled.shape, 2, 2)),
             np.zeros(is_filled.shape, dtype=bool),
         )
-        frames.id[is_filled] = track_id
-        frames.xy_m[is_filled] = xy_m
-        frames.covariance_m2[is_filled] = covariance_m2
-        frames.raised[is_filled] = raised
+        frames.id[is_filled] = track_id[order]
+        frames.xy_m[is_filled] = xy_m[order]
+        frames.covariance_m2[is_filled] = covariance_m2[order]
+        frames.raised[is_filled] = raised[order]
         return frames

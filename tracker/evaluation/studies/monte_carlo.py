@@ -42,14 +42,19 @@ from tracker.evaluation.trials.scenario import (
     FilterScenario,
     KnownPeopleScenario,
     PeopleScenario,
+    ScanScenario,
     Scenario,
     default_config,
 )
 
-#: Trials of one unit of work: enough to be worth sending, few enough to fit into a cache.
-_BATCH_UNIT, _PEOPLE_UNIT = 250, 2
-#: Batches that a process must get to make up for its start of a second or two.
-_WORTHWHILE = 50
+#: Trials of one unit of work, enough to be worth sending, and how many units a process must get to
+#: make up for its start of a second or two.
+_UNITS: dict[type[Scenario], tuple[int, int]] = {
+    FilterScenario: (250, 50),
+    KnownPeopleScenario: (250, 50),
+    PeopleScenario: (50, 4),
+    ScanScenario: (2, 1),
+}
 
 
 def run_unit(scenario: Scenario, config: Config, seed: int, first: int, count: int) -> Unit:
@@ -112,7 +117,7 @@ def monte_carlo(
         )
     name, scenario = find_scenario(scenario)
     config = default_config(scenario) if config is None else config
-    size = _unit_trials(scenario)
+    size, _ = _UNITS[type(scenario)]
     gathered, done, log = Gathered(), 0, None
     with ExitStack() as opened:
         if folder is not None:
@@ -143,8 +148,8 @@ def monte_carlo(
 
 def worthwhile_workers(scenario: Scenario, trials: int) -> int:
     """More processes than that would take longer to start than they save."""
-    units = -(-trials // _unit_trials(scenario))
-    return units // _WORTHWHILE if _is_batch(scenario) else units
+    size, worthwhile = _UNITS[type(scenario)]
+    return -(-trials // size) // worthwhile
 
 
 def find_scenario(scenario: str | Scenario) -> tuple[str, Scenario]:
@@ -158,14 +163,6 @@ def find_scenario(scenario: str | Scenario) -> tuple[str, Scenario]:
     if scenario not in SCENARIOS:
         raise SceneError(f"There is no scenario {scenario!r}; there are {', '.join(SCENARIOS)}.")
     return scenario, SCENARIOS[scenario]
-
-
-def _is_batch(scenario: Scenario) -> bool:
-    return isinstance(scenario, (FilterScenario, KnownPeopleScenario))
-
-
-def _unit_trials(scenario: Scenario) -> int:
-    return _BATCH_UNIT if _is_batch(scenario) else _PEOPLE_UNIT
 
 
 def _settings(scenario: Scenario, config: Config, seed: int) -> dict[str, Any]:

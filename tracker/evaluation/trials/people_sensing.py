@@ -88,7 +88,7 @@ def sense(scenario: PeopleScenario, scene: PeopleScene, rng: np.random.Generator
         raised=measured.raised,
     )
     pose_std = [scenario.pose_std_m, scenario.pose_std_m, np.deg2rad(scenario.pose_std_deg)]
-    doubt = np.broadcast_to(np.diag(np.square(pose_std)), (len(measurements), 3, 3))
+    doubt = np.tile(np.diag(np.square(pose_std)), (len(measurements), 1, 1))
     return SensedFrames(
         replace(measurements, sensor_pose_covariance=doubt),
         np.searchsorted(measured.frame, np.arange(len(poses) + 1)),

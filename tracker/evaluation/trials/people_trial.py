@@ -7,13 +7,13 @@ from dataclasses import replace
 
 from tracker.config import Config
 from tracker.containers import Truth
-from tracker.evaluation.metrics.frames import TrackFrames
 from tracker.evaluation.metrics.scores import score_trial
-from tracker.evaluation.recordings.tracker_steps import Step, run_steps
+from tracker.evaluation.recordings.tracker_steps import Step
 from tracker.evaluation.trials.people_scene import PeopleScene, draw_scene
 from tracker.evaluation.trials.people_sensing import Sensed, SensedFrames, sense
 from tracker.evaluation.trials.scenario import PeopleScenario
 from tracker.evaluation.trials.stated_noise import restate
+from tracker.evaluation.trials.trial_loop import track_sensed
 from tracker.evaluation.trials.trial_seed import trial_rng
 
 
@@ -52,8 +52,9 @@ def people_trial(
         SceneError: The recording of paths cannot be used.
     """
     scene, sensed = _draw(scenario, seed, trial)
-    tracks = run_steps(_steps(scene, _stated(scenario, sensed, config)), config)
-    return score_trial(scene.truth, TrackFrames.of(list(tracks)), config)
+    sensed = _stated(scenario, sensed, config)
+    tracks = track_sensed(scene.truth.stamps_ns, sensed, config)
+    return score_trial(scene.truth, tracks, config)
 
 
 def people_steps(

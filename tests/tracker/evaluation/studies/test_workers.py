@@ -20,8 +20,8 @@ from tracker.evaluation.studies.monte_carlo import monte_carlo
 from tracker.evaluation.studies.workers import Processes, run_in_order
 from tracker.evaluation.trials.scenario import SCENARIOS
 
-SHORT = dataclasses.replace(SCENARIOS["people"], duration_s=3.0)
-TRIALS = 16
+SHORT = dataclasses.replace(SCENARIOS["people"], duration_s=1.0)
+TRIALS = 400  # of 8 units
 
 
 class Mortal(Executor):
