@@ -8,10 +8,9 @@ A trial-frame is one frame of one trial with so many people. Three kinds of work
   association  predict, gate, optimal assignment and update of people who are known
   tracker      the whole of it: association, and a life cycle that finds out who is there
 
-The product's filter and its association take all trials as one array, the latter in NumPy and, as
-`fast`, compiled by numba. Its whole tracker, filterpy (linear, positions) and Stone Soup
-(extended, bearing and range) run one trial, as they would run each of many. Contenders take turns,
-so that other work slows all alike; medians.
+The product's filter and its association take all trials at once, as studies do. Its whole tracker,
+filterpy (linear, positions) and Stone Soup (extended, bearing and range) run one trial, as they
+would run each of many. Contenders take turns, so that other work slows all alike; medians.
 """
 
 from __future__ import annotations
@@ -20,8 +19,6 @@ import argparse
 import time
 from collections.abc import Callable
 from datetime import timedelta
-from functools import partial
-from importlib.util import find_spec
 
 import numpy as np
 from _stone_soup import START, StoneSoup
@@ -32,15 +29,21 @@ from stonesoup.types.detection import Detection
 from stonesoup.types.hypothesis import SingleHypothesis
 from stonesoup.types.state import GaussianState
 from stonesoup.types.track import Track
-from tracker.tracking.filter import update
 
 from tracker import Config, Measurements, PersonTracker
-from tracker.evaluation.trials.batched_tracker import BatchedTracker
-from tracker.tracking.motion import predict
+from tracker.containers.arrays import frozen
+from tracker.evaluation.trials.filter_loop import filter_trials
+from tracker.evaluation.trials.known_people_loop import follow
+from tracker.evaluation.trials.machine_code import machine_code
+from tracker.tracking.claims import claims_of
+from tracker.tracking.motion import walk
 
 PERIOD_S, BEARING_STD_RAD, RANGE_STD_M, DENSITY = 0.1, 0.01, 0.05, 0.3
 START_COVARIANCE = np.diag([0.01, 0.01, 0.25, 0.25])
-Step = Callable[[int, np.ndarray], None]  # frame, positions (B, N, 2)
+FRAMES = 30  # of a turn, as many as a trial of `known-people` has
+#: Number of the frame and positions, (B, N, 2); of the product's batches that of the first of
+#: FRAMES, and their bearings and ranges, (FRAMES, B, N, 2).
+Step = Callable[[int, np.ndarray], None]
 
 
 def polar(xy: np.ndarray, sensor_pose: np.ndarray) -> Measurements:
@@ -50,37 +53,41 @@ def polar(xy: np.ndarray, sensor_pose: np.ndarray) -> Measurements:
     return Measurements.polar(bearing, range_m, BEARING_STD_RAD, RANGE_STD_M, sensor_pose)
 
 
-def product_filter(trials: int, people: int) -> Step:
-    state = {
-        "mean": np.zeros((trials * people, 4)),
-        "covariance": np.broadcast_to(np.eye(4), (trials * people, 4, 4)),
-    }
-    sensors = np.zeros((trials * people, 3))
+def places(people: int) -> np.ndarray:
+    """Where they stand, shape (N, 2): in a square, 2 m apart."""
+    side = int(np.ceil(np.sqrt(people)))
+    return 3.0 + 2.0 * np.stack(np.divmod(np.arange(people), side), axis=-1)
 
-    def step(frame: int, xy: np.ndarray) -> None:
-        flat = xy.reshape(-1, 2)
-        if frame == 0:
-            state["mean"][:, :2] = flat
-        prior = predict(state["mean"], state["covariance"], PERIOD_S, DENSITY)
-        state["mean"], state["covariance"] = update(*prior, polar(flat, sensors))
+
+def product_filter(trials: int, people: int) -> Step:
+    count = trials * people
+    state = {"mean": np.zeros((count, 4)), "covariance": np.tile(np.eye(4), (count, 1, 1))}
+    state["mean"][:, :2] = np.tile(places(people), (trials, 1))
+    motion, filtered = walk(PERIOD_S, DENSITY), machine_code(filter_trials)
+    claims = claims_of(polar(np.ones((count, 2)), np.zeros((count, 3))), 0.0, Config())
+
+    def step(frame: int, values: np.ndarray) -> None:
+        flat = values.reshape(len(values), -1, 2)
+        given = map(frozen, (state["mean"], state["covariance"], flat))
+        means, covariances = filtered(*given, claims, motion, 0.0)
+        state["mean"], state["covariance"] = means[-1], covariances[-1]
 
     return step
 
 
-def product_association(trials: int, people: int, *, compiled: bool = False) -> Step:
+def product_association(trials: int, people: int) -> Step:
     config = Config().replace(acceleration_density=DENSITY)
-    trackers: list[BatchedTracker] = []
+    state = {
+        "mean": np.tile(np.hstack([places(people), np.zeros((people, 2))]), (trials, 1, 1)),
+        "covariance": np.tile(START_COVARIANCE, (trials, people, 1, 1)),
+    }
 
-    def step(frame: int, xy: np.ndarray) -> None:
-        x, y = np.ascontiguousarray(np.moveaxis(xy, -1, 0).swapaxes(1, 2))  # (N, B)
-        if frame == 0:
-            mean = np.stack([x, y, 0.0 * x, 0.0 * x])
-            covariance = START_COVARIANCE[..., None, None] + np.zeros(x.shape)
-            noise = (BEARING_STD_RAD, RANGE_STD_M)
-            trackers.append(BatchedTracker(mean, covariance, config, *noise, compiled=compiled))
-        chosen = trackers[0].step(PERIOD_S, np.arctan2(y, x), np.hypot(x, y))
+    def step(frame: int, values: np.ndarray) -> None:
+        given = state["mean"], state["covariance"], values.swapaxes(0, 1)
+        followed = follow(*given, (BEARING_STD_RAD, RANGE_STD_M), PERIOD_S, config)
+        state["mean"], state["covariance"] = followed.mean[:, -1], followed.covariance
         # The gate turns one true measurement in a hundred away.
-        assert np.count_nonzero(chosen) > 0.9 * x.size
+        assert np.count_nonzero(followed.row >= 0) > 0.9 * followed.row.size
 
     return step
 
@@ -194,38 +201,37 @@ WORK: dict[str, dict[str, Callable[[int, int], Step]]] = {
     },
     "association": {
         "product": product_association,
-        "fast": partial(product_association, compiled=True),
         "filterpy": filterpy_association,
         "Stone Soup": stone_soup_association,
     },
     "tracker": {"product": product_tracker, "Stone Soup": stone_soup_tracker},
 }
-CONTENDERS = ("product", "fast", "filterpy", "Stone Soup")
+CONTENDERS = ("product", "filterpy", "Stone Soup")
 
 
 def rates(work: str, people: int, trials: int, seconds: float) -> dict[str, float]:
     """Trial-frames a second of each contender."""
     rng = np.random.default_rng(people)
-    side = int(np.ceil(np.sqrt(people)))
-    grid = np.stack(np.divmod(np.arange(people), side), axis=-1)
-    at = np.broadcast_to(3.0 + 2.0 * grid, (trials, people, 2))
-    steps = {
-        name: make(trials, people)
-        for name, make in WORK[work].items()
-        if name != "fast" or find_spec("numba") is not None
-    }
+    at = np.broadcast_to(places(people), (trials, people, 2))
+    steps = {name: make(trials, people) for name, make in WORK[work].items()}
     spent: dict[str, list[float]] = {name: [] for name in steps}
     begin_s, frame = time.perf_counter(), 0
-    while frame < 8 or (time.perf_counter() - begin_s < seconds and frame < 300):
-        measured = at + rng.normal(0.0, 0.03, at.shape)
+    while frame < 3 * FRAMES or (time.perf_counter() - begin_s < seconds and frame < 20 * FRAMES):
+        measured = at + rng.normal(0.0, 0.03, (FRAMES, *at.shape))
+        x, y = np.moveaxis(measured, -1, 0)
+        values = np.stack([np.arctan2(y, x), np.hypot(x, y)], axis=-1)
         for name, step in steps.items():
+            is_batch = name == "product" and work != "tracker"
             start = time.perf_counter()
-            step(frame, measured)
-            spent[name].append(time.perf_counter() - start)
-        frame += 1
-    batched = ("product", "fast") if work != "tracker" else ()
-    at_once = {name: trials if name in batched else 1 for name in steps}
-    return {name: at_once[name] / float(np.median(times[4:])) for name, times in spent.items()}
+            if is_batch:
+                step(frame, values)
+            else:
+                for number, xy in enumerate(measured):
+                    step(frame + number, xy)
+            taken_s = (time.perf_counter() - start) / FRAMES
+            spent[name].append(taken_s / (trials if is_batch else 1))
+        frame += FRAMES
+    return {name: 1.0 / float(np.median(times[1:])) for name, times in spent.items()}
 
 
 def main() -> None:
@@ -235,13 +241,13 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=15.0, help="for each line")
     words = parser.parse_args()
     table = Table(title=f"trial-frames a second, {words.trials} trials", title_justify="left")
-    for column in ("work", "people", *CONTENDERS, "product / S. S.", "fast / S. S."):
+    for column in ("work", "people", *CONTENDERS, "product / S. S."):
         table.add_column(column, justify="right")
     for work in WORK:
         for people in words.people:
             found = rates(work, people, words.trials, words.seconds)
             numbers = [found.get(name, np.nan) for name in CONTENDERS]
-            numbers += [found.get(name, np.nan) / found["Stone Soup"] for name in CONTENDERS[:2]]
+            numbers.append(found["product"] / found["Stone Soup"])
             told = ["-" if np.isnan(number) else f"{number:,.0f}" for number in numbers]
             table.add_row(work, str(people), *told)
     Console().print(table)

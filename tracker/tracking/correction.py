@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.compiling.loops import loop, maker
+from tracker.compiling.loops import maker, step
 from tracker.containers import FloatArray
 from tracker.tracking.claims import Claims
 from tracker.tracking.gating import Pairs, log_of_sum
@@ -150,7 +150,7 @@ def correct_by(people: People, person: int, claims: Claims, row: int, dof: float
                 covariance[mode, person, i, j] = spread[0, 0, i, j]
 
 
-@loop
+@step
 def correct(
     mean: FloatArray,
     covariance: FloatArray,

@@ -1,7 +1,7 @@
 """One person a trial, many trials at once: is the filter as good as can be, and does it know?
 
-Trials are independent, so that they go through the tracker's filter as so many tracks. Everybody
-moves at nearly constant velocity, and the filter knows (whatever `motion` says).
+Trials go through the tracker's own prediction and correction. Everybody moves at nearly constant
+velocity, and the filter knows (whatever `motion` says).
 """
 
 from __future__ import annotations
@@ -13,15 +13,17 @@ from numpy.typing import NDArray
 
 from tracker.config import Config
 from tracker.containers import FloatArray, Measurements
+from tracker.containers.arrays import frozen, sealed
 from tracker.evaluation.metrics.consistency import normalized_squared
 from tracker.evaluation.metrics.constant_velocity import process_noise
 from tracker.evaluation.metrics.cramer_rao import polar_information
+from tracker.evaluation.trials.filter_loop import filter_trials
+from tracker.evaluation.trials.machine_code import machine_code
 from tracker.evaluation.trials.scenario import FilterScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.geometry import normalize_angle
 from tracker.tracking.claims import claims_of
-from tracker.tracking.correction import correct
-from tracker.tracking.motion import carry, walk
+from tracker.tracking.motion import walk
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,27 +121,21 @@ def run_filter(
     Returns:
         Means, shape (T, B, 4), and covariances, shape (T, B, 4, 4), after each measurement.
     """
-    frames, count = trials.bearing_rad.shape
-    mean = trials.prior_mean[None].copy()
-    covariance = np.repeat(prior_covariance(scenario)[None, None], count, axis=1)
-    means, covariances = np.empty((frames, count, 4)), np.empty((frames, count, 4, 4))
-    moved, root = walk(1.0 / scenario.rate_hz, config.acceleration_density), np.empty((4, 2))
-    for frame in range(frames):
-        measured = Measurements.polar(
-            trials.bearing_rad[frame],
-            trials.range_m[frame],
-            np.deg2rad(scenario.bearing_std_deg),
-            scenario.range_std_m,
-        )
-        claims = claims_of(measured, 0.0, config)
-        for trial in range(count):
-            carry(mean, covariance, 0, trial, moved, mean, covariance)
-            correct(
-                mean, covariance, 0, trial, claims, trial, config.outlier_dof,
-                mean, covariance, trial, root,
-            )  # fmt: skip
-        means[frame], covariances[frame] = mean[0], covariance[0]
-    return means, covariances
+    count = trials.bearing_rad.shape[1]
+    anything = Measurements.polar(
+        np.zeros(count),
+        np.ones(count),
+        np.deg2rad(scenario.bearing_std_deg),
+        scenario.range_std_m,
+    )
+    return machine_code(filter_trials)(
+        frozen(trials.prior_mean),
+        sealed(np.tile(prior_covariance(scenario), (count, 1, 1))),
+        sealed(np.stack([trials.bearing_rad, trials.range_m], axis=-1)),
+        claims_of(anything, 0.0, config),
+        walk(1.0 / scenario.rate_hz, config.acceleration_density),
+        config.outlier_dof,
+    )
 
 
 def filter_errors(

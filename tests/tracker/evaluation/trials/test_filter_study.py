@@ -8,10 +8,12 @@ from tracker.config import Config
 from tracker.containers import Measurements
 from tracker.evaluation.metrics.consistency import normalized_squared
 from tracker.evaluation.studies.monte_carlo import monte_carlo
+from tracker.evaluation.trials import filter_study
 from tracker.evaluation.trials.filter_study import (
     draw_filter_trials,
     filter_errors,
     prior_covariance,
+    run_filter,
 )
 from tracker.evaluation.trials.scenario import SCENARIOS, default_config
 from tracker.tracking.claims import claims_of
@@ -95,6 +97,15 @@ def test_too_little_process_noise_is_found_out():
     config = default_config(scenario).replace(acceleration_density=0.03)
     _, high = chi_square_bounds(4, 300)
     assert monte_carlo(scenario, 300, 5, config).rows["final_nees"].mean() > high
+
+
+def test_python_gives_what_machine_code_gives(monkeypatch):
+    scenario, config = SCENARIOS["outliers"], Config()
+    trials = draw_filter_trials(scenario, 3, 0, 10)
+    fast = run_filter(scenario, config, trials)
+    monkeypatch.setattr(filter_study, "machine_code", lambda function: function)
+    for one, other in zip(run_filter(scenario, config, trials), fast, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-12)
 
 
 def test_a_trial_does_not_depend_on_its_batch():

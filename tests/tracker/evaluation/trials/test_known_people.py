@@ -27,19 +27,17 @@ def test_the_tracker_of_one_person_is_as_wrong_as_it_says():
 
 def test_people_are_seen_as_often_as_they_should_be():
     trials = draw_known_people(CROWDED, 5, 0, 100)
-    own = np.isfinite(trials.bearing_rad[:, : CROWDED.people])
+    own = np.isfinite(trials.values[:, :, : CROWDED.people, 0])
     low, high = binom.ppf([0.0005, 0.9995], own.size, CROWDED.detection_probability)
     assert low <= np.count_nonzero(own) <= high
 
 
 def test_what_is_drawn_is_the_same_to_the_bit_in_every_batch():
     together, alone = draw_known_people(CROWDED, 3, 0, 30), draw_known_people(CROWDED, 3, 17, 1)
-    assert np.array_equal(together.truth[..., 17], alone.truth[..., 0])
-    rows = alone.range_m.shape[1]
-    for name in ("bearing_rad", "range_m"):
-        many, one = getattr(together, name)[..., 17], getattr(alone, name)[..., 0]
-        assert np.array_equal(many[:, :rows], one, equal_nan=True), name
-        assert np.isnan(many[:, rows:]).all(), name
+    assert np.array_equal(together.truth[17], alone.truth[0])
+    rows = alone.values.shape[2]
+    assert np.array_equal(together.values[17, :, :rows], alone.values[0], equal_nan=True)
+    assert np.isnan(together.values[17, :, rows:]).all()
 
 
 @pytest.mark.parametrize("size", [1, 7])
