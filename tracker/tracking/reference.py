@@ -10,10 +10,10 @@ say whose hand is up. With z a measured position, R its covariance, and x = (x, 
     count       raised after 2 detections in a row, lowered after 3 misses (algorithm 1)
     renew       a hand of nobody known begins a customer; M of N frames confirm; silence deletes
 
-The product does the same in its plain configuration, to rounding: the tests run both. Beyond that it
-compares bearings and ranges where they were taken, doubts far ranges, lets people stand or walk,
-weighs the assignment, knows existence, views, occlusion and bystanders, two hands of one person,
-one person tracked twice, and lets those go who called but once or long ago.
+The product does the same in its plain configuration, to rounding: the tests run both. Beyond that
+it compares bearings and ranges where they were taken, doubts far ranges, lets people stand or
+walk, weighs the assignment, knows existence, views, occlusion and bystanders, two hands of one
+person, one person tracked twice, and lets those go who called but once or long ago.
 """
 
 from __future__ import annotations
