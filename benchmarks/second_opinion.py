@@ -2,7 +2,7 @@
 
 One drawn scene of several people, some with a hand up, goes through the detectors in turn, picture
 by picture, so that other work on the machine slows all alike: read the ratios. The costs of an
-image differ: an owner is looked for twice a second, a strip in every `pose_search_period`-th.
+image differ: an owner is looked for twice a second, a strip where something moved in every third.
 """
 
 from __future__ import annotations
@@ -25,9 +25,7 @@ from tracker.simulation.stream import map_from_camera
 
 CONTENDERS = {
     "hands alone": {"pose_opinion": "none"},
-    "veto": {"pose_opinion": "veto"},
-    "full": {"pose_opinion": "full"},
-    "full, 2 reads": {"pose_opinion": "full", "pose_reads_per_frame": 2},
+    "evidence": {},
     "pose alone": {"detector": "pose"},
 }
 PLACES = [(1.2, 0.4, True), (2.2, -0.6, True), (3.0, 0.7, False), (3.6, 0.0, False)]

@@ -356,7 +356,9 @@ class NodeCore:
 
 
 def _greeting(config: Config) -> str:
-    if config.raise_rule == "palm":
+    if config.raise_rule == "evidence":
+        rule = "evidence: hand, arm, body and movement, at any distance"
+    elif config.raise_rule == "palm":
         rule = f"palm: up from {config.palm_raised_threshold:g} palm lengths, at any distance"
     else:
         rule = (

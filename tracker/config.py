@@ -58,6 +58,20 @@ def _parameter(
     return Field(default, description=description, json_schema_extra=extra, **bounds)
 
 
+#: What this release still accepts, with a warning.
+_RETIRED = frozenset(
+    {
+        "palm_lowered_threshold", "small_hand_patience_s", "raised_score_min",
+        "lowered_lean_min_deg", "pose_search_period", "pose_reads_per_frame",
+        "hand_head_clearance", "owner_hand_px", "unowned_patience_s", "hand_shoulder_rise_min",
+    }
+)  # fmt: skip
+
+
+def _warn_retired(what: str) -> None:
+    warnings.warn(f"{what}; the next release refuses it.", FutureWarning, stacklevel=2)
+
+
 class Config(BaseModel):
     """Every parameter of the tracker; see `Config.from_yaml` for files."""
 
@@ -167,38 +181,23 @@ class Config(BaseModel):
     )  # fmt: skip
 
     # Perception.
-    raise_rule: Literal["palm", "image"] = _parameter(
-        "palm", "When is a hand up? palm: measured in palm lengths, at any distance; image: the "
-        "specification's shares of the image, up to 0.7 m.",
+    raise_rule: Literal["evidence", "palm", "image"] = _parameter(
+        "evidence", "When is a hand up? evidence: hand, arm, body and movement are weighed, at "
+        "any distance; a palm, fist, finger or wave may call. palm: an open hand, in palm "
+        "lengths; image: the specification's shares of the image, up to 0.7 m.",
         group="perception", live=True,
     )  # fmt: skip
     palm_raised_threshold: float = _parameter(
         1.1, "`raise_rule: palm`: how far the middle finger's tip must be above the wrist.",
         unit="palm lengths", group="perception", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
-    palm_lowered_threshold: float = _parameter(
-        0.9, "`raise_rule: palm`: a hand that is up stays up above this.",
-        unit="palm lengths", group="perception", live=True, ge=0.0, le=3.0,
-    )  # fmt: skip
-    raised_score_min: float = _parameter(
-        0.8, "`raise_rule: palm`: landmark score without which no hand goes up.",
-        group="perception", live=True, ge=0.0, le=1.0,
-    )  # fmt: skip
     small_hand_px: float = _parameter(
-        32.0, "`raise_rule: palm`: a hand shorter than this (at 2.6 m, with the default camera) "
-        "counts as raised ...",
+        32.0, "A hand shorter than this (at 2.6 m, with the default camera) is small: see "
+        "`piece_confidence`.",
         unit="px", group="perception", live=True, ge=0.0, le=10000.0,
     )  # fmt: skip
-    small_hand_patience_s: float = _parameter(
-        0.4, "... once it has been up for so long; what looks like one is often none.",
-        unit="s", group="perception", live=True, ge=0.0, le=10.0,
-    )  # fmt: skip
     raised_lean_max_deg: float = _parameter(
-        35.0, "`raise_rule: palm`: a hand that leans farther to a side does not go up ...",
-        unit="deg", group="perception", live=True, gt=0.0, le=90.0,
-    )  # fmt: skip
-    lowered_lean_min_deg: float = _parameter(
-        50.0, "... and one that is up and leans farther than this is on its way down.",
+        35.0, "`raise_rule: palm`: a hand that leans farther to a side is not up.",
         unit="deg", group="perception", live=True, gt=0.0, le=90.0,
     )  # fmt: skip
     hand_span_threshold: float = _parameter(
@@ -216,9 +215,14 @@ class Config(BaseModel):
         group="perception", live=True, gt=0.0, lt=1.0,
     )  # fmt: skip
     search_lean_max_deg: float = _parameter(
-        75.0, "`raise_rule: palm`: hands that lean farther to a side are neither read nor "
-        "followed; 180 follows lowered hands as well.",
+        75.0, "Hands that lean farther to a side are neither read nor followed; 180 follows "
+        "lowered hands as well. `raise_rule: image` follows all.",
         unit="deg", group="perception", live=True, gt=0.0, le=180.0,
+    )  # fmt: skip
+    place_prior: bool = _parameter(
+        True, "`raise_rule: evidence`: learn where something calls that never moves, such as a "
+        "poster of a raised hand; more evidence is asked for there.",
+        group="perception", live=True,
     )  # fmt: skip
     max_hands: int = _parameter(
         8, "Hands followed at a time; the search rests while so many are followed.",
@@ -248,56 +252,24 @@ class Config(BaseModel):
         "YOLO-pose); empty takes MediaPipe's.",
         group="pose",
     )  # fmt: skip
-    pose_opinion: Literal["none", "veto", "full"] = _parameter(
-        "veto", "`detector: hands`: what body poses say about the hands. none: they are not "
-        "asked; veto: the owner of a hand that `raise_rule: palm` calls raised is looked for, one "
-        "at their head or before the body is not up; full: the whole picture is watched, an arm "
-        "that is up is a raised hand, too, where no hand was found, and the LiDAR is asked about "
-        "the torso.",
+    pose_opinion: Literal["evidence", "none"] = _parameter(
+        "evidence", "`detector: hands`, `raise_rule: evidence`: what body poses say about the "
+        "hands. evidence: the owners of hands are looked for, and arms that are up where no hand "
+        "was found; none: hands are judged alone.",
         group="pose",
-    )  # fmt: skip
-    pose_search_period: int = _parameter(
-        2, "`pose_opinion: full`: people are searched for in one strip of every so many processed "
-        "images.",
-        unit="frames", group="pose", live=True, ge=1, le=1000,
-    )  # fmt: skip
-    pose_reads_per_frame: int = _parameter(
-        1, "`pose_opinion: full`: people whose pose is read anew in an image, those most due "
-        "first.",
-        group="pose", live=True, ge=1, le=64,
     )  # fmt: skip
     pose_confidence: float = _parameter(
         0.5, "Score from which a pose model believes in a person.",
         group="pose", live=True, gt=0.0, lt=1.0,
     )  # fmt: skip
     pose_raised_threshold: float = _parameter(
-        0.25, "How far a wrist must be above its shoulder.",
+        0.25, "`detector: pose`: how far a wrist must be above its shoulder.",
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
     )  # fmt: skip
     pose_head_clearance: float = _parameter(
-        0.6, "A wrist nearer than this to nose, eyes or ears is not up, but at the head.",
+        0.6, "`detector: pose`: a wrist nearer than this to nose, eyes or ears is not up, but at "
+        "the head.",
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
-    )  # fmt: skip
-    hand_head_clearance: float = _parameter(
-        0.45, "A hand whose fingers' roots are nearer than this to its owner's nose, eyes or ears "
-        "is not up, but at the head; a bent hand, which may hold a cup, within a quarter more.",
-        unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
-    )  # fmt: skip
-    owner_hand_px: float = _parameter(
-        96.0, "`pose_opinion: veto`: a hand shorter than this (at 0.9 m, with the default camera: "
-        "nearer people may not fit into the picture), or whose forearm the lower edge cuts off, "
-        "and whose owner is not found, counts as raised ...",
-        unit="px", group="pose", live=True, ge=0.0, le=10000.0,
-    )  # fmt: skip
-    unowned_patience_s: float = _parameter(
-        2.0, "... once it has been up for so long with a sure score (`raised_score_min`); an "
-        "owner's pose decides at once.",
-        unit="s", group="pose", live=True, ge=0.0, le=3600.0,
-    )  # fmt: skip
-    hand_shoulder_rise_min: float = _parameter(
-        -0.05, "A hand whose fingers' roots are not so far above its owner's shoulders is not up, "
-        "but before the body, as of people who talk.",
-        unit="shoulder widths", group="pose", live=True, ge=-3.0, le=3.0,
     )  # fmt: skip
 
     # Ranging.
@@ -547,6 +519,21 @@ class Config(BaseModel):
                 raise ValueError(f"parameter `{name}` is no longer there: {why}. Delete it")
         return values
 
+    @model_validator(mode="before")
+    @classmethod
+    def _without_retired(cls, values: Any) -> Any:
+        """Parameters of the last release that decide nothing any more are told of, not refused."""
+        if not isinstance(values, dict):
+            return values
+        values = dict(values)
+        for name in sorted(_RETIRED & values.keys()):
+            del values[name]
+            _warn_retired(f"{name} decides nothing any more: the verdict weighs evidence")
+        if values.get("pose_opinion") in ("veto", "full"):
+            _warn_retired(f"pose_opinion: {values['pose_opinion']} is now called evidence")
+            values["pose_opinion"] = "evidence"
+        return values
+
     @model_validator(mode="after")
     def _bounds_agree(self) -> Config:
         if (self.camera_width == 0) != (self.camera_height == 0):
@@ -558,16 +545,6 @@ class Config(BaseModel):
             raise ValueError(
                 f"confirm_detections is {self.confirm_detections}; it must not exceed "
                 f"confirm_window, which is {self.confirm_window}"
-            )
-        if self.palm_lowered_threshold > self.palm_raised_threshold:
-            raise ValueError(
-                f"palm_lowered_threshold is {self.palm_lowered_threshold:g}; it must not exceed "
-                f"palm_raised_threshold, which is {self.palm_raised_threshold:g}"
-            )
-        if self.lowered_lean_min_deg < self.raised_lean_max_deg:
-            raise ValueError(
-                f"lowered_lean_min_deg is {self.lowered_lean_min_deg:g}; it must not be below "
-                f"raised_lean_max_deg, which is {self.raised_lean_max_deg:g}"
             )
         return self
 

@@ -84,7 +84,7 @@ def test_latency_is_from_the_stamp_to_the_publication_on_the_nodes_clock(wire):
     assert values["latency_ms_median"] == values["latency_ms_p99"] == "42.0"
     assert values["processed"] == "1"
     assert values["detector"] == "OneRaisedHand"
-    assert values["raise_rule"] == "palm"
+    assert values["raise_rule"] == "evidence"
 
 
 def test_stamps_of_another_time_are_named_rather_than_called_late(wire):

@@ -45,7 +45,7 @@ def test_nothing_of_ours_changes_nothing():
         ({"processing_rate": -1.0}, "above 0"),
         ({"confirm_detections": 5}, "must not exceed confirm_window"),
         ({"fixed_frame": "odom"}, "cannot change while the node runs"),
-        ({"raise_rule": "nose"}, "one of palm, image"),
+        ({"raise_rule": "nose"}, "one of evidence, palm, image"),
         ({"nonsense": 1}, "unknown parameter"),
         ({"max_hands": "many"}, "a whole number"),
     ],

@@ -129,7 +129,7 @@ def test_an_unknown_parameter_is_named_with_its_neighbor():
         ("camera_fx", -460.0, "a number above 0"),
         ("use_camera_info", 1, "true or false"),
         ("fixed_frame", None, "a text"),
-        ("raise_rule", "finger", "one of palm, image"),
+        ("raise_rule", "finger", "one of evidence, palm, image"),
         ("selection", ["first"], "one of first, nearest, newest"),
     ],
 )

@@ -37,7 +37,9 @@ def test_the_specifications_parameters_come_first():
     assert first == "    processing_rate: 10.0"
 
 
-@pytest.mark.parametrize("words", ["a number above 0 and at most 240 (Hz)", "one of palm, image"])
+@pytest.mark.parametrize(
+    "words", ["a number above 0 and at most 240 (Hz)", "one of evidence, palm, image"]
+)
 def test_ranges_and_choices_are_written_out(words):
     flowing = " ".join(default_yaml().replace("\n    #", "").split())
     assert words in flowing

@@ -27,7 +27,6 @@ _LAYOUT = {
     "raised": (FLAGS, ()),
     "raise_measure": (NUMBERS, ()),
     "torso_px": (NUMBERS, (2,)),
-    "pending": (FLAGS, ()),
     "refusal": (COUNTS, ()),
 }
 
@@ -44,9 +43,9 @@ class Refusal(IntEnum):
     OWNER_UNKNOWN = 6
     AT_HEAD = 7
     BELOW_SHOULDERS = 8
-    AT_REST = 9
-    ON_FACE = 10
-    ARM_DOWN = 11
+    ARM_DOWN = 9
+    BEFORE_BODY = 10
+    ALWAYS_THERE = 11
 
     @property
     def words(self) -> str:
@@ -64,9 +63,9 @@ _WORDS = {
     Refusal.OWNER_UNKNOWN: "owner unknown",
     Refusal.AT_HEAD: "at the head",
     Refusal.BELOW_SHOULDERS: "below the shoulders",
-    Refusal.AT_REST: "at hip or knee",
-    Refusal.ON_FACE: "on a face",
     Refusal.ARM_DOWN: "arm not up",
+    Refusal.BEFORE_BODY: "in front of the body",
+    Refusal.ALWAYS_THERE: "always there, like a poster",
 }
 
 
@@ -81,12 +80,10 @@ class Hands:
         score: Shape (H,): the landmark model's word that this is a hand, in [0, 1].
         right: Shape (H,): probability of a right hand, in [0, 1].
         raised: Shape (H,), bool: the raise rule's verdict on this one image.
-        raise_measure: Shape (H,): what the rule compared with its threshold (image heights for the
-            `image` rule, palm lengths for the `palm` rule).
+        raise_measure: Shape (H,): what the rule compared with its threshold (a probability for the
+            `evidence` rule, image heights for `image`, palm lengths for `palm`).
         torso_px: Shape (H, 2): the middle of shoulders and hips of whose hand it is; NaN where
             that is not known. None means that of no hand.
-        pending: Shape (H,), bool: up by the rule, but too unsure or too short a time to count as
-            raised unless its owner's body says so. None means no hand.
         refusal: Shape (H,), int64: of each hand that is not raised the `Refusal`; 0 for raised
             ones, and where the detector gives no reason. None means 0 for all.
     """
@@ -97,14 +94,11 @@ class Hands:
     raised: BoolArray
     raise_measure: FloatArray
     torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
-    pending: BoolArray = None  # type: ignore[assignment]  # False takes its place
     refusal: IntArray = None  # type: ignore[assignment]  # 0 takes its place
 
     def __post_init__(self) -> None:
         if self.torso_px is None:
             object.__setattr__(self, "torso_px", np.full((len(self.landmarks_px), 2), np.nan))
-        if self.pending is None:
-            object.__setattr__(self, "pending", np.zeros(len(self.landmarks_px), dtype=bool))
         if self.refusal is None:
             object.__setattr__(self, "refusal", np.zeros(len(self.landmarks_px), dtype=np.int64))
         check_rows(self, len(self.landmarks_px), _LAYOUT)

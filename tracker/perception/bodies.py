@@ -24,6 +24,9 @@ _NOSE_RISE = 0.2
 #: Bodies whose points are closer than this, on average, are one person's (guess).
 _SAME_BODY_SHOULDERS = 0.5
 
+#: Wrists so far below the shoulders, in their widths, are about as high.
+_ABOUT_LEVEL = 0.2
+
 
 class Joint(IntEnum):
     """The points of a body, in the order of the COCO data set; left is the person's own left."""
@@ -65,6 +68,8 @@ class Bodies:
         visibility: Shape (P, 17): how sure the model is of each point, in [0, 1].
         score: Shape (P,): how sure it is of the person, in [0, 1].
         age_s: Shape (P,): how long ago the person was seen there; 0 for this very image.
+        alignment_px: Shape (P, 2, 2): where to look next; see `regions_from_alignment`. None
+            means NaN, for models that do not tell.
 
     Raises:
         ShapeError: The arrays disagree in shape.
@@ -74,11 +79,15 @@ class Bodies:
     visibility: FloatArray
     score: FloatArray
     age_s: FloatArray
+    alignment_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
 
     def __post_init__(self) -> None:
-        shapes = [np.shape(getattr(self, name)) for name in self.__slots__]
         count = len(self.score)
-        if shapes != [(count, len(Joint), 2), (count, len(Joint)), (count,), (count,)]:
+        if self.alignment_px is None:
+            object.__setattr__(self, "alignment_px", np.full((count, 2, 2), np.nan))
+        shapes = [np.shape(getattr(self, name)) for name in self.__slots__]
+        needed = [(count, len(Joint), 2), (count, len(Joint)), (count,), (count,), (count, 2, 2)]
+        if shapes != needed:
             raise ShapeError(
                 f"Bodies disagree in shape: {shapes}; needed is (P, 17, 2) and so on."
             )
@@ -113,6 +122,17 @@ class Bodies:
     def grown_older(self, passed_s: float) -> Bodies:
         """The same people, as long after."""
         return replace(self, age_s=self.age_s + passed_s)
+
+    def aligned(self, alignment_px: FloatArray) -> Bodies:
+        """The same people, with where to look for them next."""
+        return replace(self, alignment_px=alignment_px)
+
+    @property
+    def arms_up(self) -> BoolArray:
+        """Shape (P, 2): arms whose wrist is seen about as high as the shoulders, or higher."""
+        seen = self.is_visible[:, WRISTS] & self.is_visible[:, SHOULDERS]
+        rise_px = self.points_px[:, SHOULDERS, 1] - self.points_px[:, WRISTS, 1]
+        return np.asarray(seen & (rise_px > -_ABOUT_LEVEL * self.shoulder_px[:, None]))
 
     @property
     def is_visible(self) -> BoolArray:

@@ -10,7 +10,7 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import CameraImage, Hands, ImageArray, Refusal, Tracks
 from tracker.perception.pictures import shrink_picture
-from tracker.perception.raise_rules import MEASURE_UNITS
+from tracker.perception.verdict.raise_rules import MEASURE_UNITS
 
 #: Bones between the landmarks: five fingers from the wrist, and the row of finger roots.
 FINGERS = (
@@ -161,7 +161,9 @@ def _status(hands: Hands, tracks: Tracks | None, config: Config) -> _Label:
         if tracks.selected_id is not None:
             parts.append(f"serving #{tracks.selected_id}")
             short.append(f"#{tracks.selected_id}")
-    if config.raise_rule == "palm":
+    if config.raise_rule == "evidence":
+        rule = "up by evidence, from 0.5"
+    elif config.raise_rule == "palm":
         rule = f"up from {config.palm_raised_threshold:g} palms"
     else:
         rule = f"up from {config.hand_raised_threshold:g} image heights"

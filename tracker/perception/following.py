@@ -28,7 +28,6 @@ from tracker.perception.landmarks import Landmarks
 from tracker.perception.movement import Movement
 from tracker.perception.palm_search import Palms, Window
 from tracker.perception.pictures import continues
-from tracker.perception.raise_rules import WRIST
 from tracker.perception.regions import (
     Regions,
     first_of_each,
@@ -37,6 +36,7 @@ from tracker.perception.regions import (
     regions_from_palms,
 )
 from tracker.perception.search_plan import SearchPlan
+from tracker.perception.verdict.raise_rules import WRIST
 
 #: Regions that overlap more than this hold the same hand; MediaPipe's value.
 SAME_REGION_OVERLAP = 0.5
@@ -290,7 +290,7 @@ def regions_of(found: Sequence[Palms], config: Config) -> Regions:
 
 def _is_upward(regions: Regions, config: Config) -> BoolArray:
     """Hands that `raise_rule: palm` could call raised, now or in a moment."""
-    if config.raise_rule != "palm":
+    if config.raise_rule == "image":
         return np.ones(len(regions), dtype=bool)
     lean_max_rad = np.radians(config.search_lean_max_deg)
     return np.asarray(np.abs(regions.rotation_rad) <= lean_max_rad)

@@ -10,8 +10,8 @@ from tracker.perception.following import HandFollower
 from tracker.perception.landmarks import LandmarkReader
 from tracker.perception.models import ModelStore
 from tracker.perception.palm_search import PalmSearch
-from tracker.perception.raise_memory import RaiseMemory
 from tracker.perception.regions import Regions, regions_from_landmarks
+from tracker.perception.verdict.raise_rules import judge_raised, rule_refusals
 
 #: What the palm model sees of a piece of the picture: a square of this side. It costs three
 #: quarters of the model's own 192 px and finds as much in tiles of 240 px.
@@ -38,7 +38,6 @@ class HandFinder:
         self._store = store if store is not None else ModelStore()
         self._config = config
         self._follower = self._open(config)
-        self._memory = RaiseMemory()
         self._expected_px = _NOWHERE
         self._suggested = Regions.none()
         self._spared = 0
@@ -88,26 +87,23 @@ class HandFinder:
         expected_px, self._expected_px = self._expected_px, _NOWHERE
         suggested, self._suggested = self._suggested, Regions.none()
         spared, self._spared = self._spared, 0
-        found, last_rows = self._follower.step(
+        found, _ = self._follower.step(
             image, self._config, expected_px, self._budget, suggested, spared
         )
-        said = self._memory.judge(
-            image.stamp_ns, found, last_rows, (image.width, image.height), self._config
-        )
+        size = (image.width, image.height)
+        raised, measure = judge_raised(found.points_px, size, self._config)
         return Hands(
             found.points_px,
             found.score,
             found.right,
-            said.raised,
-            said.measure,
-            pending=said.pending,
-            refusal=said.refusal,
+            raised,
+            measure,
+            refusal=rule_refusals(raised, measure, self._config),
         )
 
     def reset(self) -> None:
         """Forget the hands of earlier images."""
         self._follower.reset()
-        self._memory.reset()
         self._suggested = Regions.none()
 
     def configure(self, config: Config) -> None:

@@ -15,17 +15,13 @@ class KnownBodies(ABC):
 
     Args:
         config: The pose group.
-        everyone: Whether everybody is looked for in each image; otherwise `pose_search_period`
-            holds.
     """
 
     _last: CameraImage | None
-    _images_seen: int
     _known: Bodies
 
-    def __init__(self, config: Config, *, everyone: bool) -> None:
+    def __init__(self, config: Config) -> None:
         self._config = config
-        self._everyone = everyone
         self.reset()
 
     def find(self, image: CameraImage) -> Bodies:
@@ -38,15 +34,12 @@ class KnownBodies(ABC):
         passed_ns = image.stamp_ns - (self._last or image).stamp_ns
         self._last = image
         known = self._known.grown_older(passed_ns / 1e9)
-        is_due = self._everyone or self._images_seen % self._config.pose_search_period == 0
-        self._images_seen += 1
-        self._known = self._look(image, known, is_due)
+        self._known = self._look(image, known)
         return self._known
 
     def reset(self) -> None:
         """Forget everybody."""
         self._last = None
-        self._images_seen = 0
         self._known = Bodies.none()
 
     def configure(self, config: Config) -> None:
@@ -54,5 +47,5 @@ class KnownBodies(ABC):
         self._config = config
 
     @abstractmethod
-    def _look(self, image: CameraImage, known: Bodies, is_due: bool) -> Bodies:
-        """Who is known with this image; `is_due` says whether others are to be looked for."""
+    def _look(self, image: CameraImage, known: Bodies) -> Bodies:
+        """Who is known with this image."""

@@ -12,7 +12,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, Hands
 from tracker.errors import ConfigError
 from tracker.perception.pictures import continues, shrink_picture
-from tracker.perception.raise_rules import judge_raised, rule_refusals
+from tracker.perception.verdict.raise_rules import judge_raised, rule_refusals
 
 #: What mediapipe is opened with anew when it changes.
 _GRAPH_PARAMETERS = (

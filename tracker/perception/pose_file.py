@@ -114,35 +114,31 @@ class PoseFileFinder(KnownBodies):
     Args:
         model: The opened file.
         config: The pose group.
-        everyone: Whether the model runs in each image; otherwise `pose_search_period` holds.
     """
 
-    def __init__(self, model: PoseFile, config: Config, *, everyone: bool) -> None:
-        super().__init__(config, everyone=everyone)
+    def __init__(self, model: PoseFile, config: Config) -> None:
+        super().__init__(config)
         self._model = model
 
     @staticmethod
-    def open(path: Path, config: Config, *, everyone: bool) -> PoseFileFinder:
+    def open(path: Path, config: Config) -> PoseFileFinder:
         """The model of an ONNX file.
 
         Raises:
             ModelFileError: The file is absent, no ONNX file, or of no layout that is understood.
             ConfigError: ONNX Runtime has no such execution provider.
         """
-        return PoseFileFinder(PoseFile.open(path, config), config, everyone=everyone)
+        return PoseFileFinder(PoseFile.open(path, config), config)
 
     def reset(self) -> None:
         """Forget everybody."""
         super().reset()
         self._looks = 0
 
-    def _look(self, image: CameraImage, known: Bodies, is_due: bool) -> Bodies:
-        known = known[known.age_s <= _FORGET_AFTER_S]
-        if is_due:
-            found = self._seen_now(image)
-            known = Bodies.concatenate(found, known[:0] if self._sees_all else known)
-            known = known[one_row_each(known)]
-        return known
+    def _look(self, image: CameraImage, known: Bodies) -> Bodies:
+        known = known[:0] if self._sees_all else known[known.age_s <= _FORGET_AFTER_S]
+        known = Bodies.concatenate(self._seen_now(image), known)
+        return known[one_row_each(known)]
 
     @property
     def _sees_all(self) -> bool:

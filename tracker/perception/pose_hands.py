@@ -9,7 +9,7 @@ from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, Refusa
 from tracker.perception.bodies import ELBOWS, WRISTS, Bodies
 from tracker.perception.body_detector import BodyDetector
 from tracker.perception.pose_rules import judge_arms
-from tracker.perception.raise_rules import judge_raised
+from tracker.perception.verdict.raise_rules import judge_raised
 
 #: Adults' palms, from the wrist to the middle finger's root, against the width of the shoulders
 #: (guess from anthropometric tables).

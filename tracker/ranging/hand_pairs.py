@@ -1,4 +1,4 @@
-"""Which raised hands could be two of one person? Told from the picture alone."""
+"""Which raised hands could be two of one person? By the bodies seen, or by the picture alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ _LENGTH_RATIO = 1.5
 
 
 def pair_hands(hands: Hands) -> IntArray:
-    """Number the pairs of a left and a right raised hand of like size, the closest first.
+    """Number the pairs of one person's raised hands, the closest first.
+
+    Hands whose torso is known for both are a pair if that is the same; others if they are a left
+    and a right one of like size.
 
     Returns:
         Shape (H,): hands that share a number are probably one person's; -1 for a hand alone.
@@ -27,7 +30,10 @@ def pair_hands(hands: Hands) -> IntArray:
             apart_px = np.linalg.norm(hands.wrist_px[a] - hands.wrist_px[b])
             apart = float(apart_px / (length[a] + length[b]) * 2)
             ratio = max(length[a], length[b]) / min(length[a], length[b])
-            if right[a] != right[b] and ratio < _LENGTH_RATIO and apart < _DISTANCE_LENGTHS:
+            is_pair = right[a] != right[b] and ratio < _LENGTH_RATIO and apart < _DISTANCE_LENGTHS
+            if hands.is_owned[a] and hands.is_owned[b]:
+                is_pair = bool((hands.torso_px[a] == hands.torso_px[b]).all())
+            if is_pair:
                 candidates.append((apart, a, b))
     pair = np.full(len(hands), -1, dtype=np.int64)
     for number, (_, a, b) in enumerate(sorted(candidates)):

@@ -21,7 +21,7 @@ class Gesture:
         hand_deg: Direction of the fingers, from straight up outward.
         palm_visible: The palm faces the viewer.
         spread: Of the fingers.
-        holds: `cup` or `phone`, or None for an open hand.
+        holds: `cup` or `phone`, `fist` for a closed hand, or None for an open one.
     """
 
     wrist_m: tuple[float, float]
@@ -86,6 +86,49 @@ ACTIVITIES: dict[str, tuple[Moment, ...]] = {
     "rest": (
         Moment(4.0, Gesture((0.14, 1.06), -88.0), Gesture((0.16, 1.05), -85.0)),
         Moment(2.0, Gesture((0.18, 1.06), -80.0), Gesture((0.12, 1.06), -92.0)),
+    ),
+    "chin": (
+        Moment(2.5, Gesture((0.10, 1.40), -20.0, holds="fist")),
+        Moment(1.0, Gesture((0.11, 1.38), -30.0, spread=0.2)),
+        Moment(1.5, Gesture((0.13, 1.42), -12.0, spread=0.3)),
+    ),
+    "mouth": (
+        Moment(1.5, Gesture((0.10, 1.45), -55.0, spread=0.1)),
+        Moment(1.0, Gesture((0.12, 1.36), -25.0, palm_visible=True, spread=0.2)),
+        Moment(2.0, Gesture((0.22, 1.05), -60.0)),
+    ),
+    "hair": (
+        Moment(0.7, Gesture((0.16, 1.58), -35.0, spread=0.4)),
+        Moment(0.7, Gesture((0.14, 1.66), -50.0, spread=0.4)),
+        Moment(0.7, Gesture((0.17, 1.52), -20.0, spread=0.3)),
+        Moment(2.0, Gesture((0.22, 1.00), -80.0)),
+    ),
+    "on_head": (Moment(3.0, *2 * (Gesture((0.17, 1.62), -40.0, spread=0.5),)),),
+    "together": (
+        Moment(2.0, *2 * (Gesture((0.05, 1.30), -8.0, spread=0.0),)),
+        Moment(1.5, *2 * (Gesture((0.06, 1.24), -15.0, holds="fist"),)),
+    ),
+    "clap": tuple(
+        Moment(0.15, *2 * (Gesture((apart, 1.25), -20.0, spread=0.2),))
+        for apart in (0.05, 0.12, 0.18, 0.12)
+    ),
+    "cross": (Moment(4.0, *2 * (Gesture((-0.10, 1.22), -35.0, holds="fist"),)),),
+    "thumb": (
+        Moment(1.5, Gesture((0.24, 1.22), 10.0, holds="fist")),
+        Moment(1.5, Gesture((0.20, 1.30), -20.0, holds="fist")),
+    ),
+    "aside": (
+        Moment(1.5, Gesture((0.66, 1.36), 88.0, spread=0.2)),
+        Moment(1.0, Gesture((0.60, 1.20), 70.0, spread=0.2)),
+        Moment(1.0, Gesture((0.30, 1.05), 80.0)),
+    ),
+    "sign": (
+        Moment(0.5, Gesture((0.20, 1.30), -10.0, palm_visible=True, spread=0.3)),
+        Moment(0.5, Gesture((0.14, 1.34), -30.0, palm_visible=True, spread=0.8)),
+        Moment(0.5, Gesture((0.24, 1.22), 5.0, holds="fist")),
+        Moment(
+            0.5, Gesture((0.10, 1.20), -60.0, spread=0.5), Gesture((0.14, 1.18), -50.0, spread=0.3)
+        ),
     ),
     "wave_low": tuple(
         Moment(0.2, Gesture((0.40, 1.02), angle, palm_visible=True, spread=0.8))

@@ -19,6 +19,8 @@ _RAISED_DEG = {
 #: How high the fingers reach, of a figure of ordinary stature.
 _REACH_M = {"beside": 1.85, "straight": 2.12, "low": 1.85}
 _UPPER_ARM_M, _FOREARM_M = 0.27, 0.24
+#: How far the forearm of somebody who waves swings to either side, degrees (guess).
+_WAVE_DEG = 25.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,18 +40,20 @@ class Arm:
     hand_rad: float
 
 
-def bend_arm(look: Look, raised: float, side: float) -> Arm:
+def bend_arm(look: Look, raised: float, side: float, swing: float = 0.0) -> Arm:
     """The joints of an arm on its way up.
 
     Args:
         look: Whose arm.
         raised: 0 hangs (or rests on the lap), 1 is up in the person's style.
         side: -1 for the arm at the sheet's left, 1 for the one at its right.
+        swing: Of somebody who waves: -1 is farthest inward, 1 farthest outward.
     """
     low = (8.0, 2.0, 0.0) if look.seat_m is None else (12.0, -42.0, -60.0)
     *arm, straight_hand = _RAISED_DEG[look.raise_style]
     high = (*arm, straight_hand - look.lean_deg)
     upper, fore, hand = (np.radians(a + (b - a) * raised) for a, b in zip(low, high, strict=True))
+    fore, hand = fore - np.radians(_WAVE_DEG * swing), hand - np.radians(_WAVE_DEG * swing)
     scale = look.scale
     x, z = _shoulder(look)
     elbow_x = x + _UPPER_ARM_M * scale * np.sin(upper)
@@ -68,7 +72,7 @@ def reach(look: Look, place_m: tuple[float, float], hand_deg: float, side: float
     """The joints of an arm whose wrist is at a place before the body.
 
     The upper arm hangs where the forearm is long enough for that; else the forearm comes from
-    below. Whichever of the two is drawn too short points toward the viewer.
+    below, or the arm is stretched. Whichever bone is drawn too short points toward the viewer.
 
     Args:
         look: Whose arm.
@@ -83,6 +87,8 @@ def reach(look: Look, place_m: tuple[float, float], hand_deg: float, side: float
     elbow = shoulder + _UPPER_ARM_M * scale * np.array([0.15, -0.988])
     if np.linalg.norm(wrist - elbow) > _FOREARM_M * scale:
         elbow = wrist + _FOREARM_M * scale * np.array([0.43, -0.902])
+    if np.linalg.norm(shoulder - elbow) > _UPPER_ARM_M * scale:
+        elbow = shoulder + _UPPER_ARM_M / (_UPPER_ARM_M + _FOREARM_M) * (wrist - shoulder)
     return Arm(
         (side * float(shoulder[0]), float(shoulder[1])),
         (side * float(elbow[0]), float(elbow[1])),
@@ -91,10 +97,12 @@ def reach(look: Look, place_m: tuple[float, float], hand_deg: float, side: float
     )
 
 
-def raised_hand_landmarks(look: Look, *, from_behind: bool = False) -> FloatArray:
-    """Landmarks of the hand that is fully up, shape (21, 2): x_m and z_m on the sheet."""
+def raised_hand_landmarks(
+    look: Look, *, from_behind: bool = False, swing: float = 0.0
+) -> FloatArray:
+    """Landmarks of the open hand that is fully up, shape (21, 2): x_m and z_m on the sheet."""
     side = raising_side(look, from_behind=from_behind)
-    arm = bend_arm(look, 1.0, side)
+    arm = bend_arm(look, 1.0, side, swing)
     return hand_landmarks(
         arm.wrist_m,
         arm.hand_rad,

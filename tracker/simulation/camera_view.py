@@ -23,6 +23,8 @@ from tracker.simulation.scene import Person, Scene
 
 #: Heights of the arm that are painted; the nearest lower one is shown.
 RAISED_STEPS = (0.0, 0.25, 0.5, 0.75, 1.0)
+#: How far outward a hand that waves is painted; the nearest one is shown.
+SWING_STEPS = (-1.0, -0.6, 0.6, 1.0)
 
 _NOISE_MARGIN_PX = 96
 _SHARP_FROM_M = 0.55  # nearer figures are enlarged
@@ -92,7 +94,7 @@ class CameraView:
                 continue
             behind = is_from_behind(view, people, row)
             doing = None if behind else people.doing[row]  # the trunk hides what hands do
-            step = int(people.raised[row] * (len(RAISED_STEPS) - 1))
+            step = _step_of(float(people.raised[row]), float(people.swing[row]))
             what, number = doing or ("", step)
             anchor = view.pixels(ahead_left, 0.0)
             figure = self._figure(look, behind, what)[number]
@@ -108,12 +110,26 @@ class CameraView:
                 paint_activity(look, what, px_per_m=self._px_per_m)
                 if what
                 else paint_figure(
-                    look, RAISED_STEPS, px_per_m=self._px_per_m, from_behind=from_behind
+                    look, self._steps(look), px_per_m=self._px_per_m, from_behind=from_behind
                 )
             )
             exposure = self._scene.camera.exposure
             self._figures[key] = [_Pyramid(_exposed(sprite, exposure)) for sprite in sprites]
         return self._figures[key]
+
+    def _steps(self, look: Look) -> tuple[tuple[float, float], ...]:
+        """How far up and outward the arm of a figure is painted."""
+        waves = any(person.wave_hz and look_of(person) == look for person in self._scene.people)
+        swings = SWING_STEPS if waves else ()
+        return (*((step, 0.0) for step in RAISED_STEPS), *((1.0, step) for step in swings))
+
+
+def _step_of(raised: float, swing: float) -> int:
+    """Which sprite of a figure is shown."""
+    step = int(raised * (len(RAISED_STEPS) - 1))
+    if abs(swing) < abs(SWING_STEPS[1]) / 2:
+        return step
+    return len(RAISED_STEPS) + int(np.argmin(np.abs(np.array(SWING_STEPS) - swing)))
 
 
 def hands_in_view(scene: Scene, view: Viewpoint, people: People) -> BoolArray:
@@ -129,7 +145,8 @@ def raised_hand_pixels(scene: Scene, view: Viewpoint, people: People, row: int) 
     """Shape (21, 2): where a person's landmarks are in the picture once the hand is fully up."""
     ahead, left = view.forward_left(people.xy_m[row])
     behind = is_from_behind(view, people, row)
-    hand = raised_hand_landmarks(look_of(scene.people[row]), from_behind=behind)
+    swing = float(people.swing[row])
+    hand = raised_hand_landmarks(look_of(scene.people[row]), from_behind=behind, swing=swing)
     places = np.stack([np.full(len(hand), ahead), left - hand[:, 0]], axis=-1)
     return view.pixels(places, hand[:, 1])
 
@@ -159,6 +176,7 @@ def look_of(person: Person) -> Look:
         spread=look.spread,
         raise_style=person.raise_style,
         lean_deg=person.lean_deg,
+        sign=person.sign,
     )
 
 

@@ -17,22 +17,28 @@ from tracker.simulation.look import Look
 
 
 def paint_figure(
-    look: Look, raised_steps: tuple[float, ...], *, px_per_m: float, from_behind: bool = False
+    look: Look,
+    steps: tuple[tuple[float, float], ...],
+    *,
+    px_per_m: float,
+    from_behind: bool = False,
 ) -> list[Sprite]:
     """The figure with its arm at several heights.
 
     Args:
         look: Who it is.
-        raised_steps: For each sprite how far the arm is up, from 0 to 1.
+        steps: For each sprite how far the arm is up, from 0 to 1, and how far it swings in a
+            wave, from -1 to 1.
         px_per_m: Resolution.
         from_behind: Hair instead of a face, the backs of the hands.
     """
     side = raising_side(look, from_behind=from_behind)
     body = _paint_body(look, px_per_m, from_behind, resting=(-side,))
     sprites = []
-    for raised in raised_steps:
+    for raised, swing in steps:
         canvas = body.copy()
-        _paint_arm(canvas, look, bend_arm(look, raised, side), side, from_behind)
+        arm = bend_arm(look, raised, side, swing)
+        _paint_arm(canvas, look, arm, side, from_behind, calls=raised > 0.0)
         sprites.append(canvas.sprite())
     return sprites
 
@@ -129,8 +135,16 @@ def _paint_trunk(canvas: Canvas, look: Look) -> None:
     canvas.paint([[up(0.0, 1.50, 0.047), up(0.0, 1.425, 0.052)]], look.skin, 0.05)
 
 
-def _paint_arm(canvas: Canvas, look: Look, arm: Arm, side: float, from_behind: bool) -> None:
+def _paint_arm(
+    canvas: Canvas, look: Look, arm: Arm, side: float, from_behind: bool, *, calls: bool = False
+) -> None:
     _paint_limb(canvas, look, arm)
+    if calls and look.sign != "palm":
+        paint_grip(
+            canvas, arm.wrist_m, arm.hand_rad, look.skin,
+            thumb_right=side < 0, length_m=look.hand_m, points=look.sign == "finger",
+        )  # fmt: skip
+        return
     # Raised: palm toward the viewer and thumb toward the head. Hanging: the back and the nails.
     is_up = abs(arm.hand_rad) < np.pi / 2
     paint_hand(
@@ -151,7 +165,8 @@ def _paint_gesture(canvas: Canvas, look: Look, gesture: Gesture, side: float) ->
     if gesture.holds is not None:
         paint_grip(
             canvas, arm.wrist_m, arm.hand_rad, look.skin,
-            thumb_right=side < 0, length_m=look.hand_m, holds=gesture.holds,
+            thumb_right=side < 0, length_m=look.hand_m,
+            holds=None if gesture.holds == "fist" else gesture.holds,
         )  # fmt: skip
         return
     paint_hand(

@@ -1,6 +1,8 @@
-"""What does a hand look like that holds something? A palm, the thing, bent fingers around it."""
+"""What does a closed hand look like? A palm, what it holds, bent fingers; one may point up."""
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,7 +22,8 @@ def paint_grip(
     *,
     thumb_right: bool,
     length_m: float,
-    holds: str,
+    holds: str | None = None,
+    points: bool = False,
 ) -> None:
     """Paint a closed hand.
 
@@ -31,11 +34,12 @@ def paint_grip(
         skin: Its color.
         thumb_right: The thumb lies to the right when the knuckles point up.
         length_m: Of the open hand.
-        holds: `cup` or `phone`.
+        holds: `cup` or `phone`; None is a fist.
+        points: The index finger is stretched.
     """
 
-    def discs(points: FloatArray, *radii: float) -> list[Disc]:
-        placed = place(points, wrist_m, direction_rad, thumb_right, length_m)
+    def discs(points_hands: FloatArray, *radii: float) -> list[Disc]:
+        placed = place(points_hands, wrist_m, direction_rad, thumb_right, length_m)
         return [
             (float(x), float(z), r * length_m) for (x, z), r in zip(placed, radii, strict=True)
         ]
@@ -43,12 +47,15 @@ def paint_grip(
     if holds == "cup":  # upright, whichever way the hand is turned
         ((x, z, _),) = discs(np.array([(0.02, 0.52)]), 0.0)
         canvas.paint([[(x, z - 0.06, 0.029), (x, z + 0.06, 0.040)]], _CUP, 0.03)
-    else:
+    elif holds == "phone":
         ends = np.array([(0.06, 0.20), (0.06, 0.86)])
         canvas.paint([discs(ends, 0.18, 0.18)], _PHONE, 0.01)
     palm = np.array(PALM)
     canvas.paint([discs(palm[:, :2], *palm[:, 2])], skin, 0.07 * length_m)
-    for root in LANDMARKS[list(_ROOTS)]:
+    if points:
+        for start, end in pairwise(LANDMARKS[[5, 6, 7, 8]]):
+            canvas.paint([discs(np.array([start, end]), 0.055, 0.05)], skin, 0.05 * length_m)
+    for root in LANDMARKS[list(_ROOTS[points:])]:
         finger = root + np.array([(0.0, 0.12), (0.05, -0.06)])
         canvas.paint([discs(finger, 0.058, 0.052)], skin, 0.05 * length_m)
     thumb = np.array([(0.15, 0.12), (0.24, 0.34), (0.14, 0.50)])

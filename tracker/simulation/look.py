@@ -30,6 +30,7 @@ class Look:
         spread: Of the fingers: 1 is wide apart, 0 is closed.
         raise_style: `beside` the head, `straight` up, or `low`, with the elbow at the side.
         lean_deg: How far the raised hand leans outward.
+        sign: What the raised hand shows: `palm`, `fist` or `finger`.
     """
 
     stature_m: float = STATURE_M
@@ -46,6 +47,7 @@ class Look:
     spread: float = 1.0
     raise_style: str = "beside"
     lean_deg: float = 0.0
+    sign: str = "palm"
 
     @property
     def scale(self) -> float:

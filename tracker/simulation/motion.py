@@ -27,6 +27,7 @@ class People:
         xy_m: Shape (P, 2): center of the body in the map.
         facing_rad: Shape (P,): where the body looks, in the map.
         raised: Shape (P,): how far the hand is up, 0 to 1.
+        swing: Shape (P,): how far a hand that waves is outward, -1 to 1; 0 for others.
         legs: Shape (P, 2, 3): x_m, y_m, radius_m of both legs in the map, as the scanner
             meets them.
         doing: For each person the activity and which of its moments; None where the hand rests or
@@ -37,6 +38,7 @@ class People:
     xy_m: FloatArray
     facing_rad: FloatArray
     raised: FloatArray
+    swing: FloatArray
     legs: FloatArray
     doing: tuple[tuple[str, int] | None, ...]
 
@@ -75,10 +77,12 @@ def people_at(scene: Scene, time_s: float) -> People:
     robot_xy = robot_pose(scene, time_s).planar[:2]
     count = len(scene.people)
     xy, facing = np.zeros((count, 2)), np.zeros(count)
-    raised, legs = np.zeros(count), np.zeros((count, 2, 3))
+    raised, waves, legs = np.zeros(count), np.zeros(count), np.zeros((count, 2, 3))
     for row, person in enumerate(scene.people):
         xy[row], facing[row], swing = _walk(person, time_s, robot_xy)
         raised[row] = _raised(person, time_s)
+        if raised[row] >= 1.0 and person.wave_hz:
+            waves[row] = np.sin(2.0 * np.pi * person.wave_hz * time_s)
         forward = np.array([np.cos(facing[row]), np.sin(facing[row])])
         left = np.array([-forward[1], forward[0]])
         middle = xy[row] + (forward * _SHIN_FORWARD_M if person.seat_m is not None else 0.0)
@@ -90,7 +94,7 @@ def people_at(scene: Scene, time_s: float) -> People:
         None if height > 0.0 else _doing(person, time_s)
         for person, height in zip(scene.people, raised, strict=True)
     )
-    return People(ids, xy, facing, raised, legs, doing)
+    return People(ids, xy, facing, raised, waves, legs, doing)
 
 
 def _walk(person: Person, time_s: float, robot_xy: FloatArray) -> tuple[FloatArray, float, float]:

@@ -65,7 +65,10 @@ class Raise(_Part):
 class Activity(_Part):
     """Something that hands do besides calling; a raise interrupts it."""
 
-    what: Literal["talk", "drink", "phone", "scratch", "rest", "wave_low"]
+    what: Literal[
+        "talk", "drink", "phone", "scratch", "rest", "wave_low", "chin", "mouth", "hair",
+        "on_head", "together", "clap", "cross", "thumb", "aside", "sign",
+    ]  # fmt: skip
     from_s: float = Field(0.0, ge=0.0)
     until_s: float = Field(3600.0, gt=0.0)
     tempo: float = Field(1.0, ge=0.2, le=5.0, description="Times as fast.")
@@ -101,6 +104,8 @@ class Person(_Part):
         "elbow at the side)."
     )  # fmt: skip
     lean_deg: float = Field(0.0, ge=-40.0, le=40.0, description="Of the raised hand, outward.")
+    sign: Literal["palm", "fist", "finger"] = Field("palm", description="Shown by that hand.")
+    wave_hz: float = Field(0.0, ge=0.0, le=5.0, description="The raised hand waves so often.")
     look: PersonLook = Field(default_factory=PersonLook)
 
     @model_validator(mode="after")

@@ -61,61 +61,33 @@ def image(number, width=640):
     return CameraImage(number * 100_000_000, "", np.zeros((480, width, 3), np.uint8))
 
 
-def run(crowd, count, *, everyone=False, **parameters):
-    finder = BodyFinder(crowd, crowd, Config().replace(**parameters), everyone=everyone)
+def run(crowd, count, **parameters):
+    finder = BodyFinder(crowd, crowd, Config().replace(**parameters))
     return [finder.find(image(number)) for number in range(count)]
 
 
 def test_each_search_looks_at_the_next_strip(body):
     crowd = Crowd(body)
-    run(crowd, 12, pose_search_period=2)
+    run(crowd, 6)
     assert [window[0] for window in crowd.windows] == [0, 100, 200, 300, 400, 0]
 
 
-def test_an_image_costs_no_more_reads_than_allowed(body):
-    crowd = Crowd(body, 50, 250, 350, 500, 600)
-    found = run(crowd, 20, pose_search_period=1, pose_reads_per_frame=2)
-    assert max(map(len, crowd.looks)) == 2
-    assert len(found[-1]) == 5
-    assert (found[-1].age_s == 0.0).sum() == 2
-
-
-def test_everybody_is_read_in_turn(body):
-    crowd = Crowd(body, 50, 250, 350, 500)
-    run(crowd, 30, pose_search_period=1, pose_reads_per_frame=1)
-    assert crowd.looks[-4:] != crowd.looks[-1:] * 4
-    assert sorted(place for look in crowd.looks[-4:] for place in look) == [50, 250, 350, 500]
-
-
-def test_who_has_an_arm_up_is_read_more_often(body):
-    crowd = Crowd(body, 50, 250, 350, 500, up=(350,))
-    run(crowd, 40, pose_search_period=1, pose_reads_per_frame=1)
-    turns = [place for look in crowd.looks[-20:] for place in look]
-    assert turns.count(350) > 2 * turns.count(50) > 0
-
-
-def test_everyone_is_read_in_each_image_where_that_is_asked_for(body):
+def test_everybody_known_is_read_in_each_image(body):
     crowd = Crowd(body, 50, 250, 350)
-    found = run(crowd, 8, everyone=True, pose_search_period=7)
+    found = run(crowd, 8)
     assert len(crowd.windows) == 8
     assert found[-1].age_s.tolist() == [0.0, 0.0, 0.0]
 
 
 def test_somebody_seen_in_two_strips_is_one(body):
     crowd = Crowd(body, 220)  # in three strips
-    found = run(crowd, 10, pose_search_period=1)
+    found = run(crowd, 10)
     assert len(found[-1]) == 1
-
-
-def test_ages_are_the_images_own(body):
-    crowd = Crowd(body, 50, 250)
-    found = run(crowd, 9, pose_search_period=1)
-    np.testing.assert_allclose(sorted(found[-1].age_s), [0.0, 0.1])
 
 
 def test_whom_the_landmarks_lose_is_forgotten(body):
     crowd = Crowd(body, 50)
-    finder = BodyFinder(crowd, crowd, Config(pose_search_period=100), everyone=False)
+    finder = BodyFinder(crowd, crowd, Config())
     assert len(finder.find(image(0))) == 1
     crowd.bodies[50] = body(shift_px=(-150, 0), score=0.1)
     assert len(finder.find(image(1))) == 0
@@ -124,7 +96,7 @@ def test_whom_the_landmarks_lose_is_forgotten(body):
 @pytest.mark.parametrize("jump", [image(0), image(3, width=320)], ids=["time", "size"])
 def test_a_jump_starts_anew(body, jump):
     crowd = Crowd(body, 630)
-    finder = BodyFinder(crowd, crowd, Config(pose_search_period=1), everyone=False)
+    finder = BodyFinder(crowd, crowd, Config())
     for number in range(1, 6):
         found = finder.find(image(number))
     assert len(found) == 1
@@ -134,7 +106,7 @@ def test_a_jump_starts_anew(body, jump):
 
 def test_no_more_people_are_followed_than_hands_allowed(body):
     crowd = Crowd(body, *range(20, 640, 60))
-    found = run(crowd, 20, everyone=True, max_hands=4)
+    found = run(crowd, 20, max_hands=4)
     assert len(found[-1]) == 4
 
 
@@ -145,7 +117,7 @@ def test_joints_lie_where_mediapipe_sees_them(model_store, name):
     if not path.is_file():
         pytest.skip(f"the photo {name} is not here (../shared/data/photos)")
     bgr = cv2.imread(str(path))
-    finder = BodyFinder.open(Config(), model_store, everyone=True)
+    finder = BodyFinder.open(Config(), model_store)
     whole = (0, 0, bgr.shape[1], bgr.shape[0])
     regions = finder._searcher.find(bgr, whole, 0.5)
     bodies, _ = finder._reader.read(bgr, regions[:1])
@@ -188,7 +160,7 @@ def rendered():
 @pytest.mark.model
 def test_raised_arms_of_rendered_people_are_found(model_store, rendered):
     picture, wrists, up = rendered
-    finder = BodyFinder.open(Config(), model_store, everyone=True)
+    finder = BodyFinder.open(Config(), model_store)
     for number in range(6):
         bodies = finder.find(CameraImage(number, "", picture))
     bodies = bodies[np.argsort(bodies.points_px[:, HIPS, 0].mean(axis=1))]
@@ -202,6 +174,6 @@ def test_raised_arms_of_rendered_people_are_found(model_store, rendered):
 
 @pytest.mark.model
 def test_an_empty_room_holds_nobody(model_store):
-    finder = BodyFinder.open(Config(), model_store, everyone=True)
+    finder = BodyFinder.open(Config(), model_store)
     assert len(finder.find(image(0))) == 0
     assert isinstance(finder, BodyDetector)

@@ -61,7 +61,7 @@ def test_the_camera_image_itself_stays_clean(factor):
 
 
 def test_a_raised_hand_says_so_with_its_measure_in_palms(written):
-    draw_debug_image(image(), hands(True), None, Config())
+    draw_debug_image(image(), hands(True), None, Config(raise_rule="palm"))
     assert "HAND RAISED 1.82 palms" in written
     assert not any("NO HAND" in text for text in written)
 

@@ -8,10 +8,10 @@ from tracker.config import Config
 from tracker.containers import CameraImage
 from tracker.errors import ConfigError, ModelFileError
 from tracker.perception import HandDetector, HandFinder, open_detector
+from tracker.perception.call_finder import CallFinder
 from tracker.perception.mediapipe_hands import MediapipeHands
 from tracker.perception.models import ModelStore
 from tracker.perception.pose_hands import PoseHands
-from tracker.perception.second_opinion import SecondOpinion
 from tracker.pipeline import Pipeline
 
 
@@ -19,12 +19,11 @@ from tracker.pipeline import Pipeline
 @pytest.mark.parametrize(
     ("parameters", "kind"),
     [
-        ({}, SecondOpinion),
-        ({"pose_opinion": "none"}, HandFinder),
-        ({"pose_opinion": "veto"}, SecondOpinion),
-        ({"pose_opinion": "full"}, SecondOpinion),
+        ({}, CallFinder),
+        ({"pose_opinion": "none"}, CallFinder),
+        ({"raise_rule": "palm"}, HandFinder),
+        ({"raise_rule": "image"}, HandFinder),
         ({"detector": "pose"}, PoseHands),
-        ({"detector": "pose", "pose_opinion": "full"}, PoseHands),
     ],
 )
 def test_the_parameters_name_the_detector(model_store, parameters, kind):

@@ -69,8 +69,8 @@ def movenet_of_bytes(write):
     return movenet(write, TensorProto.UINT8)
 
 
-def open_finder(path, *, everyone=True, **parameters):
-    return PoseFileFinder.open(path, Config().replace(**parameters), everyone=everyone)
+def open_finder(path, **parameters):
+    return PoseFileFinder.open(path, Config().replace(**parameters))
 
 
 def image(number=0, width=640, height=480):
@@ -106,23 +106,8 @@ def test_a_model_for_one_person_looks_at_strip_after_strip(write):
         assert len(bodies) == number + 1
 
 
-def test_nobody_stays_who_is_not_found_again(write):
-    path = rtmo(write)
-    finder = open_finder(path, everyone=False, pose_search_period=20)
-    ages = [finder.find(image(number)).age_s.tolist() for number in range(13)]
-    assert ages[0] == [0.0]
-    np.testing.assert_allclose(ages[10], [1.0])
-    assert ages[11] == ages[12] == []
-
-
-def test_the_model_rests_between_searches(write):
-    finder = open_finder(rtmo(write), everyone=False, pose_search_period=3)
-    looked = [finder.find(image(number)).age_s[0] == 0.0 for number in range(7)]
-    assert looked == [True, False, False, True, False, False, True]
-
-
 def test_a_jump_back_starts_anew(write):
-    finder = open_finder(rtmo(write), everyone=False, pose_search_period=3)
+    finder = open_finder(rtmo(write))
     finder.find(image(5))
     finder.find(image(6))
     assert finder.find(image(0)).age_s.tolist() == [0.0]

@@ -73,3 +73,15 @@ def test_no_bone_is_longer_than_it_is(what, look):
             joints = np.array([arm.shoulder_m, arm.elbow_m, arm.wrist_m])
             drawn = np.linalg.norm(np.diff(joints, axis=0), axis=-1)
             assert (drawn <= bones + 1e-9).all()
+
+
+def test_the_hand_of_somebody_who_waves_goes_to_either_side():
+    inward, outward = (raised_hand_landmarks(STANDS, swing=swing)[12, 0] for swing in (-1.0, 1.0))
+    assert outward < raised_hand_landmarks(STANDS)[12, 0] < inward
+
+
+def test_a_far_hand_is_at_the_end_of_a_stretched_arm():
+    arm = reach(STANDS, (0.66, 1.36), 88.0, 1.0)
+    along = np.subtract(arm.wrist_m, arm.shoulder_m)
+    elbow = np.subtract(arm.elbow_m, arm.shoulder_m)
+    assert abs(elbow[0] * along[1] - elbow[1] * along[0]) < 1e-9

@@ -11,7 +11,7 @@ STANDS = Look()
 
 
 def test_a_figure_is_painted_once_per_height_of_the_arm():
-    low, high = paint_figure(STANDS, (0.0, 1.0), px_per_m=300.0)
+    low, high = paint_figure(STANDS, ((0.0, 0.0), (1.0, 0.0)), px_per_m=300.0)
     for sprite in (low, high):
         color, opacity = sprite.bgra[..., :3], sprite.bgra[..., 3:]
         assert opacity.max() == 255
@@ -35,14 +35,14 @@ def test_a_sleeve_covers_the_arm_in_the_shirt_s_color():
     look = replace(STANDS, shirt=(0, 255, 0), skin=(0, 0, 255))
     covered = {}
     for sleeve in ("bare", "short", "long"):
-        (sprite,) = paint_figure(replace(look, sleeve=sleeve), (1.0,), px_per_m=200.0)
+        (sprite,) = paint_figure(replace(look, sleeve=sleeve), ((1.0, 0.0),), px_per_m=200.0)
         covered[sleeve] = int((sprite.bgra[..., 1] > 100).sum())
     assert covered["bare"] < covered["short"] < covered["long"]
 
 
 def test_a_broad_person_is_broader():
     slim, broad = (
-        paint_figure(replace(STANDS, build=build, sleeve="bare"), (0.0,), px_per_m=200.0)[0]
+        paint_figure(replace(STANDS, build=build, sleeve="bare"), ((0.0, 0.0),), px_per_m=200.0)[0]
         for build in (0.8, 1.3)
     )
     row = round(slim.anchor_px[1] - 1.1 * 200.0)  # across the belly, and the arms beside it

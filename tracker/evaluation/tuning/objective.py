@@ -184,7 +184,7 @@ class RecordingObjective:
         """Stated noise that can be told anew; which hands had a pose is not kept."""
         if self.told.ranging != "person":
             return ()
-        poses = self.told.detector == "pose" or self.told.pose_opinion == "full"
+        poses = self.told.detector == "pose" or self.told.pose_opinion == "evidence"
         return ("range_std_m",) if poses else STATED
 
     @property

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tracker.config import Config
-from tracker.perception.raise_rules import image_rule, judge_raised, palm_rule
+from tracker.perception.verdict.raise_rules import image_rule, judge_raised, palm_rule
 
 VGA = (640, 480)
 

@@ -10,7 +10,7 @@ from tracker.containers import BoolArray, FloatArray, IntArray, Refusal
 WRIST, THUMB_TIP, MIDDLE_ROOT, MIDDLE_TIP, PINKY_TIP = 0, 4, 9, 12, 20
 
 #: What `Hands.raise_measure` is measured in, by `raise_rule`.
-MEASURE_UNITS = {"palm": "palms", "image": "image heights"}
+MEASURE_UNITS = {"evidence": "sure", "palm": "palms", "image": "image heights"}
 
 
 def judge_raised(

@@ -1,0 +1,36 @@
+import numpy as np
+import pytest
+
+from tracker.perception.verdict.belief import update_belief
+from tracker.perception.verdict.weights import FIRST_LOG_ODDS, IMAGE_SHARE, LOG_ODDS_MAX
+
+
+def after(evidence, images, before=float("nan"), passed_s=0.1):
+    for _ in range(images):
+        before = update_belief(before, passed_s, evidence)
+    return before
+
+
+def test_a_new_hand_begins_with_what_is_believed_of_any(upright_hand):
+    assert after(0.0, 1) == FIRST_LOG_ODDS < 0.0
+    assert after(1.0, 1) == pytest.approx(FIRST_LOG_ODDS + IMAGE_SHARE)
+
+
+def test_images_that_speak_for_a_call_add_up_to_a_limit():
+    beliefs = [after(2.0, images) for images in range(1, 30)]
+    assert np.all(np.diff(beliefs) >= 0.0)
+    assert beliefs[0] < 0.0 < beliefs[-1] <= LOG_ODDS_MAX
+
+
+def test_one_odd_image_changes_no_settled_mind():
+    assert update_belief(after(4.0, 10), 0.1, -3.0) > 0.0
+    assert update_belief(after(-4.0, 10), 0.1, 3.0) < 0.0
+
+
+def test_a_belief_without_evidence_fades_to_the_first():
+    assert update_belief(5.0, 10.0, 0.0) == pytest.approx(FIRST_LOG_ODDS, abs=1e-4)
+    assert FIRST_LOG_ODDS < update_belief(5.0, 0.5, 0.0) < 5.0
+
+
+def test_a_hand_that_goes_down_is_down_within_half_a_second():
+    assert after(-4.0, 5, before=LOG_ODDS_MAX) < 0.0

@@ -1,0 +1,194 @@
+"""Which hands call? Hands, their owners and all that was seen of both, weighed as evidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tracker.config import Config
+from tracker.containers import (
+    BoolArray,
+    CameraImage,
+    FloatArray,
+    Hands,
+    ImageArray,
+    PerceptionWork,
+    Refusal,
+)
+from tracker.perception.bodies import Bodies
+from tracker.perception.detector import GuidedDetector
+from tracker.perception.gray import tint_gray
+from tracker.perception.people_watch import LOOK_PLACES, PeopleWatch
+from tracker.perception.pictures import continues
+from tracker.perception.pose_hands import draw_hands
+from tracker.perception.verdict.evidence import Seen, gather_evidence
+from tracker.perception.verdict.memory import HandMemory
+from tracker.perception.verdict.owners import (
+    arms_without_hand,
+    find_owners,
+    hand_size_px,
+    sure_owners,
+)
+from tracker.perception.verdict.place_prior import PlacePrior
+from tracker.perception.verdict.weights import log_odds, reasons
+
+#: An arm that was seen so long ago still counts where no hand was found.
+_ARM_MAX_AGE_S = 0.2
+#: A hand that is less likely than this to call, for itself, waits for a look at its owner.
+_MAY_CALL = -2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Weighed:
+    """How the last verdict came about; row i of each array is hand i.
+
+    Attributes:
+        bodies: Who was known.
+        evidence: Shape (H, F), in the order of `evidence.NAMES`.
+        log_odds: Shape (H,): of this image alone.
+        belief: Shape (H,): after it.
+        bar: Shape (H,): what was asked for.
+    """
+
+    bodies: Bodies
+    evidence: FloatArray
+    log_odds: FloatArray
+    belief: FloatArray
+    bar: FloatArray
+
+
+class CallFinder:
+    """A hand detector whose hands are raised where the evidence says that they call.
+
+    Args:
+        hands: Finds hands.
+        watch: Finds the people around them; None asks nobody.
+        config: The perception and pose groups.
+    """
+
+    def __init__(self, hands: GuidedDetector, watch: PeopleWatch | None, config: Config) -> None:
+        self._hands = hands
+        self._watch = watch
+        self._config = config
+        self._memory = HandMemory()
+        self._prior = PlacePrior()
+        self._is_pressed = False
+        self._last: CameraImage | None = None
+        self.weighed: Weighed | None = None
+
+    @property
+    def work(self) -> PerceptionWork:
+        """What the hands of the last image cost; the bodies are not counted."""
+        return self._hands.work
+
+    @property
+    def seen(self) -> ImageArray | None:
+        """The last image as the hands' models saw it."""
+        return self._hands.seen
+
+    @property
+    def place_bar(self) -> float:
+        """How much the bar was raised at the place that shows the most false calls, log-odds."""
+        return self._prior.highest
+
+    def expect(self, boxes_px: FloatArray) -> None:
+        """Where raised hands are likelier."""
+        self._hands.expect(boxes_px)
+
+    def set_budget(self, runs: int | None) -> None:
+        """How many model runs the hands of an image may take; arms are not watched then."""
+        self._is_pressed = runs is not None
+        self._hands.set_budget(runs)
+
+    def find(self, image: CameraImage) -> Hands:
+        """Every hand of the image, in pixels of the full image.
+
+        After those that were found comes a schematic hand for each arm that is up and has none.
+        """
+        if self._last is not None and not continues(self._last, image):
+            self._memory.reset()
+        self._last = image
+        hands = self._hands.find(image)
+        bodies = self._look_around(image, hands)
+        arms = bodies.arms_up & arms_without_hand(hands, bodies)
+        arms &= (bodies.age_s <= _ARM_MAX_AGE_S)[:, None]
+        person = np.nonzero(arms)[0]
+        drawn = draw_hands(bodies, arms, (image.width, image.height), self._config)
+        self._hands.suggest(drawn.landmarks_px[bodies.age_s[person] == 0.0])
+        asked = np.zeros(len(hands), dtype=bool)
+        if self._watch is not None:
+            asked = self._watch.is_asked(hands)
+        seen = Seen(
+            is_found=np.arange(len(hands) + len(drawn)) < len(hands),
+            owner=np.concatenate([find_owners(hands, bodies), person]),
+            is_asked=np.append(asked, np.zeros(len(drawn), dtype=bool)),
+            swing=np.zeros(len(hands) + len(drawn)),
+        )
+        return self._weigh(image.stamp_ns, Hands.concatenate(hands, drawn), bodies, seen)
+
+    def _look_around(self, image: CameraImage, hands: Hands) -> Bodies:
+        """Who is there."""
+        if self._watch is None:
+            return Bodies.none()
+        nothing = np.zeros(len(hands))
+        alone = Seen(nothing == 0.0, np.full(len(hands), -1), nothing > 0.0, nothing)
+        may_call = log_odds(gather_evidence(hands, Bodies.none(), alone)) > _MAY_CALL
+        picture = image.bgr if self.seen is None else self.seen
+        picture = replace(image, bgr=tint_gray(picture))
+        bodies = self._watch.find(picture, hands, may_call, rests=self._is_pressed)
+        if self._watch.looks_next and not self._is_pressed:
+            self._hands.spare(LOOK_PLACES)
+        return bodies
+
+    def _weigh(self, stamp_ns: int, hands: Hands, bodies: Bodies, seen: Seen) -> Hands:
+        """The hands with the verdict on each."""
+        known = self._memory.recognize(stamp_ns, hands)
+        seen = seen._replace(swing=np.array([item.swing() for item in known]))
+        evidence = gather_evidence(hands, bodies, seen)
+        odds = log_odds(evidence)
+        belief = np.array(
+            [item.weigh(stamp_ns, one) for item, one in zip(known, odds.tolist(), strict=True)]
+        )
+        bar = self._bars(stamp_ns, hands, belief > 0.0)
+        self.weighed = Weighed(bodies, evidence, odds, belief, bar)
+        raised = belief > bar
+        refusal = np.where(odds > bar, Refusal.TOO_BRIEF, reasons(evidence))
+        refusal = np.where((belief > 0.0) & ~raised, Refusal.ALWAYS_THERE, refusal)
+        # A look around one hand may take a neighbor for its owner: where the person is hangs on
+        # sure owners alone.
+        owner = np.where(seen.is_found, sure_owners(hands, bodies), seen.owner)
+        torso_px = np.full((len(hands), 2), np.nan)
+        torso_px[owner >= 0] = bodies.torso_px[owner[owner >= 0]]
+        return replace(
+            hands,
+            raised=raised,
+            raise_measure=1.0 / (1.0 + np.exp(bar - belief)),
+            torso_px=torso_px,
+            refusal=np.where(raised, Refusal.NO_REASON, refusal),
+        )
+
+    def _bars(self, stamp_ns: int, hands: Hands, calls: BoolArray) -> FloatArray:
+        if not self._config.place_prior:
+            return np.zeros(len(hands))
+        wrist_px, size_px = hands.wrist_px, hand_size_px(hands)
+        self._prior.learn(stamp_ns, wrist_px[calls], size_px[calls])
+        return self._prior.bars(stamp_ns, wrist_px, size_px)
+
+    def reset(self) -> None:
+        """Forget earlier images."""
+        self._last = None
+        self._hands.reset()
+        self._memory.reset()
+        self._prior.reset()
+        if self._watch is not None:
+            self._watch.reset()
+
+    def configure(self, config: Config) -> None:
+        """Take over changed parameters, from the next image on.
+
+        Raises:
+            ModelFileError: As the hand detector's; nothing has changed then.
+        """
+        self._hands.configure(config)
+        self._config = config

@@ -1,0 +1,114 @@
+"""Which hand of the last images is this, how did it move, and what is believed of it?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from tracker.containers import FloatArray, Hands, IntArray
+from tracker.perception.verdict.belief import update_belief
+from tracker.perception.verdict.owners import hand_size_px
+
+#: A hand that waves goes so far from one image to the next, in its lengths ...
+_REACH_HANDS = 1.5
+#: ... and an unseen one is remembered for so long.
+_FORGET_AFTER_S = 1.0
+#: A wave of the hand takes about half a second; so long a time shows two.
+_SWING_S = 1.5
+#: Steps shorter than this, in hand lengths, are noise; so long a way to and fro is a wave.
+_STILL_HANDS, _WAVE_HANDS = 0.2, 2.5
+
+
+@dataclass(slots=True)
+class RememberedHand:
+    """One hand, as it was in the last images.
+
+    Attributes:
+        wrist_px: Where it was last.
+        size_px: Of it; see `hand_size_px`.
+        seen_ns: When.
+        since_ns: When it was first seen.
+        log_odds: That it calls; NaN before the first verdict.
+        weighed_ns: When that was believed.
+        way: (stamp_ns, column of the hand's middle) in the images of the last `_SWING_S`.
+    """
+
+    wrist_px: FloatArray
+    size_px: float
+    seen_ns: int
+    since_ns: int
+    log_odds: float = float("nan")
+    weighed_ns: int = 0
+    way: list[tuple[int, float]] = field(default_factory=list)
+
+    def weigh(self, stamp_ns: int, evidence: float) -> float:
+        """The log-odds that the hand calls, after an image's evidence."""
+        passed_s = (stamp_ns - self.weighed_ns) / 1e9
+        self.log_odds, self.weighed_ns = update_belief(self.log_odds, passed_s, evidence), stamp_ns
+        return self.log_odds
+
+    def swing(self) -> float:
+        """How much the hand goes to and fro: 0 is still, or moves one way; 1 is a wave."""
+        steps = np.diff([column for _, column in self.way]) / max(self.size_px, 1.0)
+        steps = steps[np.abs(steps) > _STILL_HANDS]
+        to_and_fro = np.abs(steps).sum() - abs(steps.sum())
+        return float(min(to_and_fro / _WAVE_HANDS, 1.0))
+
+
+class HandMemory:
+    """Recognizes the hands of one image after the other by their places."""
+
+    def __init__(self) -> None:
+        self._hands: list[RememberedHand] = []
+
+    def recognize(self, stamp_ns: int, hands: Hands) -> list[RememberedHand]:
+        """What is remembered of each hand; of a new one, nothing but where it is.
+
+        Args:
+            stamp_ns: Of the image.
+            hands: Of it.
+
+        Returns:
+            An entry for each hand, in their order; the caller may write its `log_odds`.
+        """
+        kept = [
+            item for item in self._hands if 0 <= stamp_ns - item.seen_ns <= _FORGET_AFTER_S * 1e9
+        ]
+        rows = _same_rows(kept, hands)
+        size_px = hand_size_px(hands)
+        middle_px = hands.landmarks_px[:, 9, 0]
+        answer = []
+        for row in range(len(hands)):
+            if rows[row] < 0:
+                item = RememberedHand(hands.wrist_px[row], 0.0, stamp_ns, stamp_ns)
+                kept.append(item)
+            else:
+                item = kept[rows[row]]
+            item.wrist_px, item.seen_ns = hands.wrist_px[row], stamp_ns
+            item.size_px = float(size_px[row])
+            item.way = [step for step in item.way if stamp_ns - step[0] <= _SWING_S * 1e9]
+            item.way.append((stamp_ns, float(middle_px[row])))
+            answer.append(item)
+        self._hands = kept
+        return answer
+
+    def reset(self) -> None:
+        """Forget all hands."""
+        self._hands = []
+
+
+def _same_rows(known: list[RememberedHand], hands: Hands) -> IntArray:
+    """Shape (H,): the remembered hand that each is; -1 for new ones."""
+    rows = np.full(len(hands), -1, dtype=np.int64)
+    if not known or len(hands) == 0:
+        return rows
+    places = np.array([item.wrist_px for item in known])
+    length = np.fmax(hand_size_px(hands)[:, None], [item.size_px for item in known])
+    apart = np.linalg.norm(hands.wrist_px[:, None] - places, axis=-1) / np.maximum(length, 8.0)
+    pairs = linear_sum_assignment(np.minimum(apart, 10.0 * _REACH_HANDS))
+    for hand, item in zip(*pairs, strict=True):
+        if apart[hand, item] <= _REACH_HANDS:
+            rows[hand] = item
+    return rows
