@@ -59,7 +59,7 @@ def _parameter(
 
 
 #: What this release still accepts, with a warning.
-_RETIRED = frozenset(
+_UNUSED = frozenset(
     {
         "palm_lowered_threshold", "small_hand_patience_s", "raised_score_min",
         "lowered_lean_min_deg", "pose_search_period", "pose_reads_per_frame",
@@ -68,7 +68,7 @@ _RETIRED = frozenset(
 )  # fmt: skip
 
 
-def _warn_retired(what: str) -> None:
+def _warn_unused(what: str) -> None:
     warnings.warn(f"{what}; the next release refuses it.", FutureWarning, stacklevel=2)
 
 
@@ -521,16 +521,16 @@ class Config(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _without_retired(cls, values: Any) -> Any:
+    def _without_unused(cls, values: Any) -> Any:
         """Parameters of the last release that decide nothing any more are told of, not refused."""
         if not isinstance(values, dict):
             return values
         values = dict(values)
-        for name in sorted(_RETIRED & values.keys()):
+        for name in sorted(_UNUSED & values.keys()):
             del values[name]
-            _warn_retired(f"{name} decides nothing any more: the verdict weighs evidence")
+            _warn_unused(f"{name} decides nothing any more: the verdict weighs evidence")
         if values.get("pose_opinion") in ("veto", "full"):
-            _warn_retired(f"pose_opinion: {values['pose_opinion']} is now called evidence")
+            _warn_unused(f"pose_opinion: {values['pose_opinion']} is now called evidence")
             values["pose_opinion"] = "evidence"
         return values
 

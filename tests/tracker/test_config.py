@@ -108,6 +108,17 @@ def test_a_program_that_names_a_retired_parameter_is_told_to_delete_it(make, nam
         make({name: value})
 
 
+def test_a_parameter_that_decides_nothing_any_more_is_accepted_with_a_warning():
+    with pytest.warns(FutureWarning, match="owner_hand_px decides nothing any more"):
+        assert Config.from_mapping({"owner_hand_px": 96.0, "max_hands": 3}) == Config(max_hands=3)
+
+
+@pytest.mark.parametrize("opinion", ["veto", "full"])
+def test_a_former_pose_opinion_is_taken_for_evidence_with_a_warning(opinion):
+    with pytest.warns(FutureWarning, match=f"pose_opinion: {opinion} is now called evidence"):
+        assert Config.from_mapping({"pose_opinion": opinion}) == Config()
+
+
 def test_an_unknown_parameter_is_named_with_its_neighbor():
     with pytest.raises(ConfigError, match="`procesing_rate`; did you mean `processing_rate`"):
         Config.from_mapping({"procesing_rate": 5.0})

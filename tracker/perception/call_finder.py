@@ -134,8 +134,8 @@ class CallFinder:
         nothing = np.zeros(len(hands))
         alone = Seen(nothing == 0.0, np.full(len(hands), -1), nothing > 0.0, nothing)
         may_call = log_odds(gather_evidence(hands, Bodies.none(), alone)) > _MAY_CALL
-        picture = image.bgr if self.seen is None else self.seen
-        picture = replace(image, bgr=tint_gray(picture))
+        seen = image.bgr if self.seen is None else self.seen
+        picture = replace(image, bgr=tint_gray(seen))
         bodies = self._watch.find(picture, hands, may_call, rests=self._is_pressed)
         if self._watch.looks_next and not self._is_pressed:
             self._hands.spare(LOOK_PLACES)

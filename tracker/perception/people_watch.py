@@ -92,7 +92,7 @@ class PeopleWatch:
         """
         if self._last is None or not continues(self._last, image):
             self._begin(image)
-        now_ns, passed_ns = image.stamp_ns, image.stamp_ns - self._last.stamp_ns
+        now_ns, passed_ns = image.stamp_ns, image.stamp_ns - (self._last or image).stamp_ns
         self._last = image
         known = self._known.grown_older(passed_ns / 1e9)
         self._known = known = known[known.age_s <= FORGET_AFTER_S]
@@ -159,7 +159,7 @@ class PeopleWatch:
         period_s[owner[(owner >= 0) & calling]] = _OWNER_S
         arms = arms_without_hand(hands, known) & known.arms_up
         period_s[arms.any(axis=1)] = _ARM_S
-        return known.age_s / period_s
+        return np.asarray(known.age_s / period_s)
 
     def _strip_need(self, now_ns: float) -> tuple[float, int]:
         """How overdue a look at the neediest strip is, and which that is."""

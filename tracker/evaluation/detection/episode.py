@@ -85,7 +85,8 @@ def score_caller(
         if not people.hand_up[0]:
             continue
         frames += 1
-        errors += _landmark_errors(result, truth_px, hand_px)
+        shown_px = raised_hand_pixels(scene, _view(scene, time_s), people, 0)  # a wave moves it
+        errors += _landmark_errors(result, shown_px, hand_px)
         if np.any(result.tracks.raised & is_of_hand):
             return CallerScore(hand_px, frames, _median(errors), false_raises)
         if frames == FRAMES_TO_FIND:

@@ -57,6 +57,7 @@ FACTORS: dict[str, tuple[str, ...]] = {
     "sleeve": ("long", "short", "bare"),
     "hand": ("left", "right"),
     "company": ("alone", "together"),
+    "sign": ("palm", "fist", "finger", "wave"),
 }
 _ATTEMPTS = 1000
 _ROOM_TINT = 35
@@ -74,6 +75,7 @@ class Conditions:
         sleeve: Of the caller.
         hand: Which one goes up.
         company: Whether somebody else, who does not call, is in the room.
+        sign: What the raised hand shows; a wave is an open hand that goes to and fro.
     """
 
     distance_m: float
@@ -83,6 +85,7 @@ class Conditions:
     sleeve: str
     hand: str
     company: str
+    sign: str = "palm"
 
 
 def draw_conditions(
@@ -133,6 +136,7 @@ def caller_scene(
             skin=conditions.skin,
             sleeve=conditions.sleeve,
             hand=conditions.hand,
+            **_call(conditions.sign, rng),
             raises=(Raise(from_s=HAND_UP_S, until_s=until_s),),
         )
         people = [caller]
@@ -187,6 +191,15 @@ def _deal(levels: Sequence[str], count: int, rng: np.random.Generator) -> list[s
     dealt = [order[row % len(order)] for row in range(count)]
     rng.shuffle(dealt)
     return dealt
+
+
+def _call(sign: str, rng: np.random.Generator) -> dict[str, Any]:
+    """How somebody calls; a closed hand before the shoulder, and a slow wave, would be no call."""
+    if sign == "wave":
+        return {"wave_hz": rng.uniform(0.8, 2.0)}
+    if sign == "palm":
+        return {}
+    return {"sign": sign, "raise_style": str(rng.choice(("beside", "straight")))}
 
 
 def _idler(

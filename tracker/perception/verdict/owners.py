@@ -25,7 +25,7 @@ _OPEN_PALMS = 1.9
 def hand_size_px(hands: Hands) -> FloatArray:
     """Shape (H,): how long each hand is, or would be if it were open; a fist is twice its palm."""
     palm = hands.landmarks_px[:, MIDDLE_ROOT] - hands.wrist_px
-    return np.maximum(hands.length_px, _OPEN_PALMS * np.linalg.norm(palm, axis=-1))
+    return np.asarray(np.maximum(hands.length_px, _OPEN_PALMS * np.linalg.norm(palm, axis=-1)))
 
 
 def head_distance_px(bodies: Bodies, points_px: FloatArray) -> FloatArray:

@@ -1,4 +1,5 @@
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -56,6 +57,23 @@ def test_a_scene_shows_what_its_conditions_say():
     assert (scene.camera.exposure, scene.camera.motion_px) == (0.35, 3)
     assert idler.path[0].x_m > caller.path[0].x_m
     assert not idler.raises
+
+
+@pytest.mark.parametrize("sign", ["fist", "finger"])
+def test_a_closed_hand_that_calls_is_well_up(sign):
+    rng = np.random.default_rng(11)
+    callers = [caller_scene(replace(SOME, sign=sign), 3.0, 10.0, rng).people[0] for _ in range(8)]
+    assert {caller.sign for caller in callers} == {sign}
+    assert {caller.raise_style for caller in callers} == {"beside", "straight"}
+
+
+def test_a_wave_goes_to_and_fro_while_the_hand_is_up():
+    scene = caller_scene(replace(SOME, sign="wave"), 3.0, 10.0, np.random.default_rng(12))
+    swing = [people_at(scene, HAND_UP_S + tick / 20.0).swing[0] for tick in range(40)]
+    assert scene.people[0].sign == "palm"
+    assert min(swing) < -0.9
+    assert max(swing) > 0.9
+    assert people_at(scene, HAND_UP_S - 0.1).swing[0] == 0.0
 
 
 def test_the_same_generator_draws_the_same_scene():
