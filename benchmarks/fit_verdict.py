@@ -39,7 +39,7 @@ from tracker.simulation.stream import map_from_camera
 
 LOOKS = 14
 #: Cases that fair judges dispute count less, people of whom there are few pictures more.
-SHARES = {"sign_at_shoulder": 0.3, "fist_beside_head": 0.5, "clips": 3.0, "people_more": 2.0}
+SHARES = {"sign_at_shoulder": 0.4, "fist_beside_head": 0.5, "clips": 3.0, "people_more": 2.0}
 #: A hand is the labeled one within so many lengths of it, or pixels.
 _NEAR_HANDS, _NEAR_PX = 0.6, 12.0
 

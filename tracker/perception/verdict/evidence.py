@@ -22,7 +22,6 @@ _EYES = [Joint.LEFT_EYE, Joint.RIGHT_EYE]
 _CROWN = 0.5
 #: A hand of this length loses its shape from here on downward, px.
 _SMALL_PX = 32.0
-_UPPER_BODY = [Joint.NOSE, *SHOULDERS, *ELBOWS, *WRISTS]
 #: A body of which so much is not seen, or not believed, may be none. Pose models see people in
 #: cables and chairs, but hardly their elbows and wrists: .1 to .6 against .95 and more of people.
 _NO_PERSON = 0.3
@@ -153,8 +152,8 @@ def _of_arm(hands: Hands, owners: Bodies, is_found: BoolArray) -> FloatArray:
     other = points[rows, np.array(WRISTS)[1 - side]]
     pair = np.linalg.norm(other - wrist, axis=-1) / width
     pair = np.where(visible[rows, np.array(WRISTS)[1 - side]], pair, np.inf)
-    seen = owners.visibility[:, _UPPER_BODY].mean(axis=1)
-    doubt = np.clip((1.0 - seen * owners.score) / _NO_PERSON, 0.0, 1.0)
+    both = owners.visibility[:, [*ELBOWS, *WRISTS]].mean(axis=1)
+    trunk = owners.visibility[:, [Joint.NOSE, *SHOULDERS]].mean(axis=1)
     mismatch = np.where(is_found, np.minimum(apart.min(axis=1) / width, 1.0), 0.0)
     return np.column_stack(
         [
@@ -165,8 +164,8 @@ def _of_arm(hands: Hands, owners: Bodies, is_found: BoolArray) -> FloatArray:
             np.clip(1.0 - head / _HEAD_REACH, 0.0, 1.0),
             np.clip(1.0 - 2.0 * aside, 0.0, 1.0),
             np.clip(1.0 - pair / _OTHER_REACH, 0.0, 1.0),
-            doubt,
-            np.where(is_found, 0.0, doubt),
+            np.clip((1.0 - trunk * owners.score) / _NO_PERSON, 0.0, 1.0),
+            np.where(is_found, 0.0, np.clip((1.0 - both * owners.score) / _NO_PERSON, 0.0, 1.0)),
             mismatch,
         ]
     )

@@ -51,7 +51,7 @@ PRIORS = MappingProxyType(
         "inside": Prior(-2.0),
         "together": Prior(-2.0, 10.0),
         "doubt": Prior(-0.5),
-        "faint": Prior(-2.0),
+        "faint": Prior(-4.0),
         "apart": Prior(-1.0, 10.0),
         "swing": Prior(1.0, 10.0),
     }

@@ -13,13 +13,13 @@ from tracker.containers import FloatArray, IntArray, Refusal
 from tracker.perception.verdict.evidence import NAMES
 
 #: What is believed of a hand that was never seen, and how fast a belief fades to it, s.
-FIRST_LOG_ODDS, FADE_S = -2.0, 0.7
+FIRST_LOG_ODDS, FADE_S = -1.75, 2.0
 #: Images of one hand are alike; each adds this share of its evidence.
 IMAGE_SHARE = 0.5
 #: No belief is stronger than this, so that a hand that goes down is soon noticed.
 LOG_ODDS_MAX = 5.0
 #: The log-odds of a hand of which every quantity is 0.
-BIAS = -3.62
+BIAS = -3.33
 
 
 class Weight(NamedTuple):
@@ -35,32 +35,32 @@ class Weight(NamedTuple):
 
 
 WEIGHTS: dict[str, Weight] = {
-    "found": Weight(0.98),
-    "score": Weight(0.64, Refusal.UNSURE),
+    "found": Weight(0.69),
+    "score": Weight(0.54, Refusal.UNSURE),
     "small": Weight(0.0, Refusal.UNSURE),
-    "rise": Weight(1.40),
-    "lean": Weight(-1.06, Refusal.LEANS),
+    "rise": Weight(1.35),
+    "lean": Weight(-1.05, Refusal.LEANS),
     "fingers": Weight(0.0),
     "longest": Weight(0.0),
-    "spread": Weight(0.12),
-    "thumb": Weight(-2.90),
-    "owned": Weight(0.59),
-    "unowned": Weight(-0.33, Refusal.OWNER_UNKNOWN),
-    "alone": Weight(2.26),
-    "low": Weight(-4.14, Refusal.BELOW_SHOULDERS),
-    "palm_low": Weight(-2.23, Refusal.BELOW_SHOULDERS),
-    "high": Weight(3.56),
-    "overhead": Weight(1.12),
-    "forearm": Weight(3.58, Refusal.ARM_DOWN),
-    "head": Weight(-5.46, Refusal.AT_HEAD),
-    "fist_low": Weight(-1.20, Refusal.BELOW_SHOULDERS),
+    "spread": Weight(0.22),
+    "thumb": Weight(-2.86),
+    "owned": Weight(0.50),
+    "unowned": Weight(-0.29, Refusal.OWNER_UNKNOWN),
+    "alone": Weight(2.30),
+    "low": Weight(-4.26, Refusal.BELOW_SHOULDERS),
+    "palm_low": Weight(-2.28, Refusal.BELOW_SHOULDERS),
+    "high": Weight(3.78),
+    "overhead": Weight(1.32),
+    "forearm": Weight(3.60, Refusal.ARM_DOWN),
+    "head": Weight(-5.47, Refusal.AT_HEAD),
+    "fist_low": Weight(-1.15, Refusal.BELOW_SHOULDERS),
     "palm_on_head": Weight(-4.17, Refusal.AT_HEAD),
-    "inside": Weight(-2.25, Refusal.BEFORE_BODY),
-    "together": Weight(-2.07, Refusal.BEFORE_BODY),
-    "doubt": Weight(-0.71, Refusal.OWNER_UNKNOWN),
-    "faint": Weight(-2.89, Refusal.OWNER_UNKNOWN),
-    "apart": Weight(-1.03, Refusal.OWNER_UNKNOWN),
-    "swing": Weight(0.90),
+    "inside": Weight(-2.21, Refusal.BEFORE_BODY),
+    "together": Weight(-2.06, Refusal.BEFORE_BODY),
+    "doubt": Weight(-1.07, Refusal.OWNER_UNKNOWN),
+    "faint": Weight(-4.33, Refusal.OWNER_UNKNOWN),
+    "apart": Weight(-1.04, Refusal.OWNER_UNKNOWN),
+    "swing": Weight(0.91),
 }
 _LOG_ODDS = np.array([WEIGHTS[name].log_odds for name in NAMES])
 _REASONS = np.array([WEIGHTS[name].reason for name in NAMES])

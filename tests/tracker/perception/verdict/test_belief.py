@@ -28,7 +28,7 @@ def test_one_odd_image_changes_no_settled_mind():
 
 
 def test_a_belief_without_evidence_fades_to_the_first():
-    assert update_belief(5.0, 10.0, 0.0) == pytest.approx(FIRST_LOG_ODDS, abs=1e-4)
+    assert update_belief(5.0, 30.0, 0.0) == pytest.approx(FIRST_LOG_ODDS, abs=1e-3)
     assert FIRST_LOG_ODDS < update_belief(5.0, 0.5, 0.0) < 5.0
 
 
