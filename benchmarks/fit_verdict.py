@@ -25,6 +25,7 @@ from rich.table import Table
 
 from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, ImageArray, IntArray
+from tracker.evaluation.detection.looks import jittered_looks
 from tracker.evaluation.detection.scenes import caller_scene, draw_conditions, idlers_scene
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.perception import open_detector
@@ -101,8 +102,9 @@ def photos(watcher: Watcher, root: Path) -> Iterator[Seen]:
         for seed, (name, places) in enumerate(sorted(wrists.items())):
             bgr = cv2.imread(str(labels.parent / name))
             wrists_px = np.array(places).reshape(-1, 2)
-            looks = ((look, wrists_px) for look in jittered(bgr, np.random.default_rng(seed)))
-            yield watcher.play(looks, people.get(name, name.split("_")[0]), share)
+            looks = jittered_looks(bgr, LOOKS, np.random.default_rng(seed))
+            shown = ((look, wrists_px) for look in looks)
+            yield watcher.play(shown, people.get(name, name.split("_")[0]), share)
 
 
 def clips(watcher: Watcher, root: Path) -> Iterator[Seen]:
@@ -147,16 +149,6 @@ def rendered(
         elif people.raised[0] > 0.0:
             wrists_px = None
         yield painter.render(view, people), wrists_px
-
-
-def jittered(bgr: ImageArray, rng: np.random.Generator) -> Iterator[ImageArray]:
-    """A photo as a video shows it: moved by up to 1.2 px, with a noise of 2 gray levels."""
-    height, width = bgr.shape[:2]
-    for _ in range(LOOKS):
-        shift = np.column_stack([np.eye(2), rng.uniform(-1.2, 1.2, 2)])
-        moved = cv2.warpAffine(bgr, shift, (width, height), borderMode=cv2.BORDER_REPLICATE)
-        noisy = moved + rng.normal(0.0, 2.0, bgr.shape) + rng.integers(-2, 3)
-        yield np.clip(noisy, 0, 255).astype(np.uint8)
 
 
 def read_people(root: Path) -> dict[str, str]:

@@ -30,7 +30,9 @@ _SCENES, _PHOTOS = "Drawn scenes", "Your own photos"
 def evaluate_command(
     folder: Annotated[
         Path | None,
-        typer.Argument(help="Folder of photos with a labels.csv; drawn scenes without one."),
+        typer.Argument(
+            help="Folder of photos with a labels.csv, or of such folders; without, drawn scenes."
+        ),
     ] = None,
     episodes: Annotated[
         int,
@@ -63,12 +65,12 @@ def evaluate_command(
     looks: Annotated[
         int,
         typer.Option(
-            help="Show each photo so many times and judge the last: a search that goes from "
-            "region to region needs several looks.",
+            help="Show each photo so many times, ten a second and slightly changed; a hand counts "
+            "that is raised in two looks in a row. 1 judges the photo itself, once.",
             min=1,
             rich_help_panel=_PHOTOS,
         ),
-    ] = 1,
+    ] = 25,
     config: ConfigOption = None,
     param: ParameterOption = None,
     out: Annotated[
@@ -92,7 +94,13 @@ def evaluate_command(
         bar_02.jpg,0
 
     One row per raised hand, x and y (which may be left out) the pixel of its wrist; raised 0 for a
-    photo in which nobody raises a hand. The contact sheet shows what was missed and invented.
+    photo in which nobody raises a hand. The contact sheet shows what was missed, why, and what was
+    invented. attributes.csv (file and any columns, such as hand or light) breaks the figures down.
+    Videos in clips/ are judged against clips/episodes.csv, a row for each raised hand:
+
+        clip,start_s,end_s
+        waiter_1.mp4,2.0,9.5
+        lunch.mp4,,
 
     [bold]Examples[/bold]
 
@@ -161,21 +169,30 @@ def _evaluate_scenes(
 def _evaluate_photos(
     folder: Path, config: Config, looks: int, out: Path | None, as_json: bool
 ) -> None:
-    from tracker.evaluation.detection.photo_labels import read_labels
+    from tracker.evaluation.detection.clip_study import clips_as_dict, read_clips, study_clips
+    from tracker.evaluation.detection.photo_labels import read_photos
     from tracker.evaluation.detection.photo_study import photos_as_dict, study_photos
     from tracker.perception import open_detector
-    from tracker.report.photo_table import photo_tables, write_photos
+    from tracker.report.photo_table import clip_table, photo_tables, write_photos
 
-    photos = read_labels(folder)
+    photos, labeled_clips = read_photos(folder), read_clips(folder)
     fetch_models_if_needed(errors)
     with bar(errors, "Judging photos") as progress:
         study = study_photos(photos, open_detector(config), looks=looks, progress=progress)
-    files = write_photos(study, out) if out is not None else ()
+    with bar(errors, "Judging clips") as progress:
+        clips = study_clips(
+            labeled_clips,
+            config,
+            progress=lambda number: progress(number / len(labeled_clips), number),
+        )
+    files = write_photos(study, out, clips) if out is not None else ()
     if as_json:
-        print_json(photos_as_dict(study))
+        print_json({**photos_as_dict(study), "clips": clips_as_dict(clips)})
         return
     for table in photo_tables(study):
         console.print(table)
+    if clips.clips:
+        console.print(clip_table(clips))
     print_files(files)
 
 

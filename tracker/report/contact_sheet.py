@@ -66,8 +66,9 @@ def _tile(item: JudgedPhoto) -> ImageArray:
     tile: ImageArray = np.full((_TILE_PX + _CAPTION_PX, _TILE_PX, 3), as_bgr(PAPER), np.uint8)
     tile[: small.shape[0], : small.shape[1]] = small
     missed, false = int((~item.is_found).sum()), int(item.is_false.sum())
-    words = [f"{missed} missed"] * bool(missed) + [f"{false} false"] * bool(false)
-    text = f"{item.photo.path.name[:26]}: {', '.join(words)}"
+    why = ", ".join(dict.fromkeys(filter(None, item.reasons)))
+    words = [f"{missed} missed ({why})"] * bool(missed) + [f"{false} false"] * bool(false)
+    text = f"{item.photo.path.name[:20]}: {', '.join(words)}"
     place = (2, small.shape[0] + 18)
-    cv2.putText(tile, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.45, as_bgr(INK), 1, cv2.LINE_AA)
+    cv2.putText(tile, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.4, as_bgr(INK), 1, cv2.LINE_AA)
     return tile

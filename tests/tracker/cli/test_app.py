@@ -286,7 +286,7 @@ def test_evaluate_judges_photos(run, tmp_path):
     got, output, _ = run("evaluate", "photos", "-o", "out")
     assert got == 0
     assert "0 of 1" in output
-    assert (tmp_path / "out" / "photos.csv").read_text().splitlines()[1] == "gray.png,0,0,0"
+    assert (tmp_path / "out" / "photos.csv").read_text().splitlines()[1] == "gray.png,0,0,0,"
 
 
 def test_a_study_has_a_page_that_tells_its_command(run, tmp_path):

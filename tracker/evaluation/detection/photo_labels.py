@@ -1,10 +1,10 @@
-"""Whose hand is up in these photos? The user's own labels.csv: file, raised, and perhaps where."""
+"""Whose hand is up in these photos? The user's own labels.csv, and what else is known of them."""
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from tracker.containers import FloatArray
 from tracker.errors import RecordingError
 
-LABELS = "labels.csv"
+LABELS, ATTRIBUTES = "labels.csv", "attributes.csv"
 
 _COLUMNS = ("file", "raised", "x", "y")
 _YES, _NO = frozenset({"1", "true", "yes"}), frozenset({"0", "false", "no"})
@@ -26,10 +26,42 @@ class LabeledPhoto:
         path: The photo.
         wrists_px: Shape (R, 2): column and row of each raised hand's wrist; NaN where the labels
             say only that there is one.
+        traits: What attributes.csv says of the photo, by column; figures are broken down by it.
     """
 
     path: Path
     wrists_px: FloatArray
+    traits: dict[str, str] = field(default_factory=dict)
+
+
+def read_photos(folder: str | Path) -> tuple[LabeledPhoto, ...]:
+    """Read the labels of a folder, or of each folder in it that has some.
+
+    `attributes.csv` in the folder may say more of the photos: its column `file` names each from
+    there (`bar/03.jpg`), the others are free, such as `hand` (palm, fist, finger) or `light`.
+
+    Args:
+        folder: Holds labels.csv, or folders that do.
+
+    Raises:
+        RecordingError: As `read_labels`; or attributes.csv has no column `file`.
+    """
+    folder = Path(folder)
+    inner = sorted(path.parent for path in folder.glob(f"*/{LABELS}"))
+    if (folder / LABELS).exists() or not inner:
+        inner = [folder]
+    traits = _read_traits(folder / ATTRIBUTES)
+    photos = [photo for place in inner for photo in read_labels(place)]
+    return tuple(
+        replace(
+            photo,
+            traits={
+                **({"folder": photo.path.parent.name} if len(inner) > 1 else {}),
+                **traits.get(photo.path.relative_to(folder).as_posix(), {}),
+            },
+        )
+        for photo in photos
+    )
 
 
 def read_labels(folder: str | Path) -> tuple[LabeledPhoto, ...]:
@@ -75,6 +107,24 @@ def read_labels(folder: str | Path) -> tuple[LabeledPhoto, ...]:
         LabeledPhoto(path.parent / name, np.array(hands, dtype=np.float64).reshape(-1, 2))
         for name, hands in wrists.items()
     )
+
+
+def _read_traits(path: Path) -> dict[str, dict[str, str]]:
+    if not path.is_file():
+        return {}
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.DictReader(file, skipinitialspace=True, restval="")
+            if "file" not in (reader.fieldnames or ()):
+                raise RecordingError(
+                    f"{path}: line 1: there is no column `file`; name the photos."
+                )
+            return {
+                row.pop("file"): {name: value for name, value in row.items() if name and value}
+                for row in reader
+            }
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise RecordingError(f"{path}: cannot be read ({error}).") from error
 
 
 def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tracker.errors import RecordingError
-from tracker.evaluation.detection.photo_labels import read_labels
+from tracker.evaluation.detection.photo_labels import read_labels, read_photos
 
 
 @pytest.fixture
@@ -62,3 +62,27 @@ def test_labels_that_are_no_text_are_refused(tmp_path):
     (tmp_path / "labels.csv").write_bytes(b"file,raised\n\xff\xfe\x00,1\n")
     with pytest.raises(RecordingError, match=r"is no CSV file in UTF-8"):
         read_labels(tmp_path)
+
+
+def test_attributes_say_more_of_the_photos(labels, tmp_path):
+    labels("file,raised\na.jpg,1\nb.jpg,0\n")
+    (tmp_path / "attributes.csv").write_text("file,hand,light\na.jpg,fist,\n", encoding="utf-8")
+    assert [photo.traits for photo in read_photos(tmp_path)] == [{"hand": "fist"}, {}]
+
+
+def test_folders_of_photos_are_read_together(tmp_path):
+    for name in ("bar", "hall"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "a.jpg").touch()
+        (tmp_path / name / "labels.csv").write_text("file,raised\na.jpg,0\n", encoding="utf-8")
+    (tmp_path / "attributes.csv").write_text("file,hand\nhall/a.jpg,palm\n", encoding="utf-8")
+    bar, hall = read_photos(tmp_path)
+    assert bar.traits == {"folder": "bar"}
+    assert hall.traits == {"folder": "hall", "hand": "palm"}
+
+
+def test_attributes_without_files_are_refused(labels, tmp_path):
+    labels("file,raised\na.jpg,1\n")
+    (tmp_path / "attributes.csv").write_text("photo,hand\na.jpg,fist\n", encoding="utf-8")
+    with pytest.raises(RecordingError, match="line 1: there is no column `file`"):
+        read_photos(tmp_path)

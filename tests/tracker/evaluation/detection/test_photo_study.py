@@ -1,5 +1,6 @@
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from tracker.containers import Hands
+from tracker.containers import Hands, Refusal
 from tracker.errors import RecordingError
 from tracker.evaluation.detection.photo_labels import LabeledPhoto
 from tracker.evaluation.detection.photo_study import judge_photo, photos_as_dict, study_photos
@@ -50,7 +51,7 @@ def test_labels_and_hands_are_paired(labels, hands, found, false):
 
 
 class Answers:
-    """Gives the answer that belongs to a picture's blue value; counts looks since a reset."""
+    """Gives its answers picture by picture, after a reset each; counts the looks at them."""
 
     def __init__(self, *answers):
         self.answers = answers
@@ -58,7 +59,7 @@ class Answers:
 
     def find(self, image):
         self.looks[-1] += 1
-        return self.answers[int(image.bgr[0, 0, 0])]
+        return self.answers[len(self.looks) - 1]
 
     def reset(self):
         self.looks.append(0)
@@ -84,7 +85,58 @@ def test_photos_are_judged_alone_and_summed_up(photos):
     assert detector.looks == [3, 3, 3]
     assert [(share.count, share.total) for share in study.shares] == [(1, 2), (2, 3), (1, 1)]
     told = json.loads(json.dumps(photos_as_dict(study), allow_nan=False))
-    assert told["photos"][2] == {"file": "2.png", "raised": 0, "found": 0, "false": 2}
+    assert told["photos"][2] == {
+        "file": "2.png",
+        "raised": 0,
+        "found": 0,
+        "false": 2,
+        "reasons": "",
+    }
+
+
+class Turns(Answers):
+    """Gives one answer after the other, look by look."""
+
+    def find(self, image):
+        self.looks[-1] += 1
+        return self.answers[(self.looks[-1] - 1) % len(self.answers)]
+
+
+def test_a_hand_that_is_raised_now_and_then_is_neither_found_nor_false(photos):
+    flickers = Turns(hands_at((52, 100), (200, 90)), hands_at((52, 100), raised=False))
+    study = study_photos(photos[:1], flickers, looks=8)
+    assert [share.count for share in study.shares] == [0, 0, 0]
+    assert study.photos[0].reasons == ("raised",)
+
+
+def test_two_looks_in_a_row_find_a_hand_and_tell_how_soon(photos):
+    late = Turns(*[hands_at()] * 3, *[hands_at((52, 100))] * 2, *[hands_at()] * 5)
+    study = study_photos(photos[:1], late, looks=10)
+    assert study.photos[0].is_found.tolist() == [True]
+    assert study.median_delay_s == pytest.approx(0.4)
+
+
+def test_two_false_hands_at_different_places_are_none(photos):
+    jumps = Turns(hands_at((9, 90)), hands_at((200, 90)))
+    study = study_photos(photos[2:], jumps, looks=6)
+    assert [share.count for share in study.shares][2] == 0
+
+
+def test_a_missed_hand_tells_what_spoke_against_it(photos):
+    at_head = replace(hands_at((52, 100), raised=False), refusal=[Refusal.AT_HEAD])
+    study = study_photos(photos[:1], Answers(at_head))
+    assert study.photos[0].reasons == ("at the head",)
+
+
+def test_figures_are_broken_down_by_what_is_known_of_the_photos(photos):
+    photos = [
+        replace(photo, traits={"hand": hand, "file": f"{row}"})
+        for row, (photo, hand) in enumerate(zip(photos, ("palm", "fist", ""), strict=True))
+    ]
+    study = study_photos(photos, Answers(hands_at((50, 100)), hands_at(), hands_at()))
+    by_hand = study.shares_by["hand"]
+    assert [by_hand[hand][0].count for hand in ("palm", "fist")] == [1, 0]
+    assert by_hand["-"][2].total == 1
 
 
 def test_lowered_hands_count_for_nothing(photos):
@@ -115,7 +167,7 @@ def test_files_and_a_contact_sheet_show_what_went_wrong(photos, tmp_path):
     missed = (sheet == (0, 183, 245)).all(axis=-1)  # the ring's color, of photo 0 alone
     assert missed[:, :330].any()
     assert not missed[:, 330:].any()
-    assert files[1].read_text().splitlines()[1] == "0.png,1,0,0"
+    assert files[1].read_text().splitlines()[1] == "0.png,1,0,0,not found"
     console = Console(width=80, file=io.StringIO())
     console.print(*photo_tables(wrong))
     assert "1 of 2" in console.file.getvalue()
