@@ -24,7 +24,7 @@ _NEAR_HANDS, _NEAR_MIN_PX = 0.6, 12.0
 #: Two false hands of neighboring looks are one within a hand's length, or so far.
 _SAME_MIN_PX = 40.0
 #: Traits with more values than this, such as names, say nothing.
-_LEVELS_MAX = 12
+_LEVELS_MAX = 8
 _LOOK_NS = 100_000_000
 
 
@@ -102,7 +102,7 @@ class PhotoStudy:
     @property
     def median_delay_s(self) -> float:
         """Of the hands that were found; NaN of none."""
-        delays = np.concatenate([item.delay_s[item.is_found] for item in self.photos] or [[]])
+        delays = [delay for item in self.photos for delay in item.delay_s[item.is_found].tolist()]
         return float(np.median(delays)) if len(delays) else float("nan")
 
 
@@ -169,11 +169,11 @@ def judge_looks(photo: LabeledPhoto, seen: Sequence[Hands]) -> JudgedPhoto:
     """
     looks = [judge_photo(photo, hands[hands.raised]) for hands in seen]
     pairs = list(pairwise(looks)) or [(looks[0], looks[0])]
-    found = np.array([before.is_found & now.is_found for before, now in pairs])
+    found = np.stack([before.is_found & now.is_found for before, now in pairs])
     false = [now.is_false & _were_false(before, now.hands) for before, now in pairs]
     # The look with most false hands, of these the last.
     worst = max(range(len(pairs)), key=lambda row: (int(false[row].sum()), row))
-    is_found = found.any(axis=0)
+    is_found: BoolArray = np.asarray(found.any(axis=0))
     delay_s = np.where(is_found, (found.argmax(axis=0) + 1) * _LOOK_NS / 1e9, np.nan)
     reasons = tuple(
         "" if is_found[row] else _reason(wrist, seen) for row, wrist in enumerate(photo.wrists_px)

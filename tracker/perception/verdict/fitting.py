@@ -30,11 +30,8 @@ PRIORS = MappingProxyType(
     {
         "found": Prior(0.0),
         "score": Prior(1.0, 10.0),
-        "small": Prior(-0.5, 10.0),
         "rise": Prior(2.0, 10.0),
         "lean": Prior(-1.0),
-        "fingers": Prior(0.5),
-        "longest": Prior(0.5, 10.0),
         "spread": Prior(0.4, 5.0),
         "thumb": Prior(-2.0),
         "owned": Prior(0.0),

@@ -37,11 +37,8 @@ class Weight(NamedTuple):
 WEIGHTS: dict[str, Weight] = {
     "found": Weight(0.69),
     "score": Weight(0.54, Refusal.UNSURE),
-    "small": Weight(0.0, Refusal.UNSURE),
     "rise": Weight(1.35),
     "lean": Weight(-1.05, Refusal.LEANS),
-    "fingers": Weight(0.0),
-    "longest": Weight(0.0),
     "spread": Weight(0.22),
     "thumb": Weight(-2.86),
     "owned": Weight(0.50),

@@ -52,21 +52,16 @@ def test_a_hand_rises_or_leans_as_its_landmarks_do(upright_hand):
     assert aside["lean"] == pytest.approx(np.pi / 2)
 
 
-def test_stretched_fingers_are_told_from_bent_ones(upright_hand):
+def test_a_thumb_speaks_for_an_open_hand_and_against_a_closed_one(upright_hand):
     hand = upright_hand((100, 100))
     joints = {f"p{row}": (100, 86) for row in (6, 10, 14, 18)}
-    open_hand = shaped(hand, **joints, **{f"p{row}": (100, 81) for row in (8, 12, 16, 20)})
-    fist = shaped(hand, **joints, **{f"p{row}": (100, 93) for row in (8, 12, 16, 20)})
-    finger = shaped(fist, p8=(100, 81))
-    assert evidence(open_hand)["fingers"] == pytest.approx(1.0)
-    assert evidence(fist)["longest"] == pytest.approx(-1.0)
-    assert evidence(finger)["longest"] == pytest.approx(1.0)
-    assert evidence(finger)["fingers"] < 0.0
-
-
-def test_a_small_hand_is_told_so(upright_hand):
-    assert evidence(upright_hand((148, 70), palm_px=20.0))["small"] == 0.0
-    assert evidence(upright_hand((148, 70), palm_px=16.0 / 1.9))["small"] == pytest.approx(1.0)
+    thumb_out = {"p4": (120, 90), "p17": (95, 91)}
+    palm = shaped(hand, **joints, **thumb_out, **{f"p{row}": (100, 81) for row in (8, 12, 16, 20)})
+    fist = shaped(hand, **joints, **thumb_out, **{f"p{row}": (100, 93) for row in (8, 12, 16, 20)})
+    assert evidence(palm)["spread"] == pytest.approx(1.0)
+    assert evidence(palm)["thumb"] == 0.0
+    assert evidence(fist)["thumb"] == pytest.approx(1.0)
+    assert evidence(fist)["spread"] == 0.0
 
 
 @pytest.mark.parametrize(
