@@ -363,6 +363,7 @@ def _work_values(work: Collection[PerceptionWork]) -> dict[str, object]:
     return {
         "places_searched_mean": f"{np.mean([each.places for each in work]):.1f}",
         "hands_read_mean": f"{np.mean([each.hands for each in work]):.1f}",
+        "place_bar_max": f"{max(each.place_bar for each in work):.1f}",
         **{f"{name}_ms_median": _milliseconds(times, 50) for name, times in stages.items()},
     }
 

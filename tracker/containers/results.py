@@ -95,6 +95,8 @@ class PerceptionWork:
         search_s: Palm searches, and beside them the landmarks of followed hands.
         new_hands_s: Landmarks of what the search found.
         total_s: All of it.
+        place_bar: How much more evidence the place asks for that shows the most false calls,
+            log-odds; 0 where nothing was learned (`Config.place_prior`).
     """
 
     places: int = 0
@@ -102,6 +104,7 @@ class PerceptionWork:
     search_s: float = 0.0
     new_hands_s: float = 0.0
     total_s: float = 0.0
+    place_bar: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

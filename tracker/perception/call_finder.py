@@ -80,17 +80,12 @@ class CallFinder:
     @property
     def work(self) -> PerceptionWork:
         """What the hands of the last image cost; the bodies are not counted."""
-        return self._hands.work
+        return replace(self._hands.work, place_bar=self._prior.highest)
 
     @property
     def seen(self) -> ImageArray | None:
         """The last image as the hands' models saw it."""
         return self._hands.seen
-
-    @property
-    def place_bar(self) -> float:
-        """How much the bar was raised at the place that shows the most false calls, log-odds."""
-        return self._prior.highest
 
     def expect(self, boxes_px: FloatArray) -> None:
         """Where raised hands are likelier."""

@@ -139,6 +139,15 @@ def test_a_place_that_always_calls_meets_a_higher_bar_unless_that_is_off(body, o
     assert play(*poster, images=600, place_prior=False).raised.tolist() == [True]
 
 
+def test_the_work_tells_of_a_place_that_always_calls(body, open_hand):
+    finder = CallFinder(Told(open_hand((148, 70))), PeopleWatch(Look(body(**UP))), Config())
+    for number in range(600):
+        finder.find(image(number))
+    assert finder.work.place_bar > 0.0
+    finder.reset()
+    assert finder.work.place_bar == 0.0
+
+
 def test_without_a_watch_the_hands_decide_alone(open_hand):
     answer = play(open_hand((148, 70), palm_px=30.0), None, pose_opinion="none")
     assert answer.raised.tolist() == [True]
