@@ -18,7 +18,12 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from tracker.errors import ConfigError
 from tracker.parameter_file import NODE_NAME as NODE_NAME  # where it is looked for
 from tracker.parameter_file import is_ours, read_parameters
-from tracker.retired_parameters import RETIRED, without_retired
+from tracker.retired_parameters import (
+    LATELY_RETIRED,
+    RETIRED,
+    without_lately_retired,
+    without_retired,
+)
 from tracker.wording import shown
 
 #: Python's own warning, at the line that called `Config.from_yaml`.
@@ -56,20 +61,6 @@ def _parameter(
     extra: dict[str, Any] = {"unit": unit, "group": group, "live": live}
     extra["search"] = None if search is None else asdict(search)
     return Field(default, description=description, json_schema_extra=extra, **bounds)
-
-
-#: What this release still accepts, with a warning.
-_UNUSED = frozenset(
-    {
-        "palm_lowered_threshold", "small_hand_patience_s", "raised_score_min",
-        "lowered_lean_min_deg", "pose_search_period", "pose_reads_per_frame",
-        "hand_head_clearance", "owner_hand_px", "unowned_patience_s", "hand_shoulder_rise_min",
-    }
-)  # fmt: skip
-
-
-def _warn_unused(what: str) -> None:
-    warnings.warn(f"{what}; the next release refuses it.", FutureWarning, stacklevel=2)
 
 
 class Config(BaseModel):
@@ -515,24 +506,9 @@ class Config(BaseModel):
     @classmethod
     def _none_is_retired(cls, values: dict[str, Any]) -> dict[str, Any]:
         for name, why in RETIRED.items():
-            if name in values:
+            if name in values and name not in LATELY_RETIRED:
                 raise ValueError(f"parameter `{name}` is no longer there: {why}. Delete it")
-        return values
-
-    @model_validator(mode="before")
-    @classmethod
-    def _without_unused(cls, values: Any) -> Any:
-        """Parameters of the last release that decide nothing any more are told of, not refused."""
-        if not isinstance(values, dict):
-            return values
-        values = dict(values)
-        for name in sorted(_UNUSED & values.keys()):
-            del values[name]
-            _warn_unused(f"{name} decides nothing any more: the verdict weighs evidence")
-        if values.get("pose_opinion") in ("veto", "full"):
-            _warn_unused(f"pose_opinion: {values['pose_opinion']} is now called evidence")
-            values["pose_opinion"] = "evidence"
-        return values
+        return without_lately_retired(values)
 
     @model_validator(mode="after")
     def _bounds_agree(self) -> Config:

@@ -5,6 +5,7 @@ A file that was copied whole from an earlier version still names them, and must 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -12,7 +13,20 @@ from typing import Any
 RETIRED = {
     "appearance_weight": "the colors of clothes saved false raises and cost false customers",
     "measurement_model": "bearing and range are always compared where they were taken (polar)",
-}
+    **dict.fromkeys(
+        (
+            "palm_lowered_threshold", "small_hand_patience_s", "raised_score_min",
+            "lowered_lean_min_deg", "pose_search_period", "pose_reads_per_frame",
+            "hand_head_clearance", "owner_hand_px", "unowned_patience_s",
+            "hand_shoulder_rise_min",
+        ),
+        "the verdict weighs evidence (`raise_rule`)",
+    ),
+}  # fmt: skip
+#: Those that the last version had: programs may still name them in this one, and are warned.
+LATELY_RETIRED = frozenset(RETIRED) - {"appearance_weight", "measurement_model"}
+#: Values that have another name now, by parameter.
+_RENAMED = {"pose_opinion": {"veto": "evidence", "full": "evidence"}}
 
 
 def without_retired(
@@ -33,6 +47,22 @@ def without_retired(
             + "; ".join(gone)
         )
     return {name: value for name, value in values.items() if _parameter(name) not in RETIRED}
+
+
+def without_lately_retired(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters as this version knows them, with a `FutureWarning` for each that is changed."""
+    kept = {name: value for name, value in values.items() if name not in LATELY_RETIRED}
+    for name in sorted(values.keys() - kept.keys()):
+        _warn(f"{name} decides nothing any more: {RETIRED[name]}")
+    for name, others in _RENAMED.items():
+        if isinstance(kept.get(name), str) and kept[name] in others:
+            _warn(f"{name}: {kept[name]} is now called {others[kept[name]]}")
+            kept[name] = others[kept[name]]
+    return kept
+
+
+def _warn(what: str) -> None:
+    warnings.warn(f"{what}. The next version refuses it.", FutureWarning, stacklevel=2)
 
 
 def _parameter(name: str) -> str:
