@@ -22,7 +22,7 @@ from tracker.perception.gray import tint_gray
 from tracker.perception.people_watch import LOOK_PLACES, PeopleWatch
 from tracker.perception.pictures import continues
 from tracker.perception.pose_hands import draw_hands
-from tracker.perception.verdict.evidence import Seen, gather_evidence
+from tracker.perception.verdict.evidence import NAMES, Seen, gather_evidence
 from tracker.perception.verdict.memory import HandMemory
 from tracker.perception.verdict.owners import (
     arms_without_hand,
@@ -37,6 +37,8 @@ from tracker.perception.verdict.weights import log_odds, reasons
 _ARM_MAX_AGE_S = 0.2
 #: A hand that is less likely than this to call, for itself, waits for a look at its owner.
 _MAY_CALL = -2.0
+#: A wrist so far above the shoulder, in widths of the shoulders, is up.
+_UP = 0.3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,9 +143,16 @@ class CallFinder:
         known = self._memory.recognize(stamp_ns, hands)
         seen = seen._replace(swing=np.array([item.swing() for item in known]))
         evidence = gather_evidence(hands, bodies, seen)
+        faint = evidence[:, NAMES.index("faint")]
+        for row in np.flatnonzero(~seen.is_found):
+            faint[row] = known[row].doubt(stamp_ns, float(faint[row]))
         odds = log_odds(evidence)
+        is_up = evidence[:, NAMES.index("high")] > _UP
         belief = np.array(
-            [item.weigh(stamp_ns, one) for item, one in zip(known, odds.tolist(), strict=True)]
+            [
+                item.weigh(stamp_ns, one, is_up=up)
+                for item, one, up in zip(known, odds.tolist(), is_up.tolist(), strict=True)
+            ]
         )
         bar = self._bars(stamp_ns, hands, belief > 0.0)
         self.weighed = Weighed(bodies, evidence, odds, belief, bar)

@@ -95,7 +95,8 @@ def gather_evidence(hands: Hands, bodies: Bodies, seen: Seen) -> FloatArray:
         # greeting, and one on the head is none.
         "head": head * (1.0 - palm),
         "palm_on_head": palm * np.clip(2.0 * head / _ON_HEAD - 2.0, 0.0, 1.0),
-        "swing": seen.swing,
+        # Talking hands move to and fro as well, but low.
+        "swing": seen.swing * np.clip(2.0 * arm["high"], 0.0, 1.0),
     }
     return np.stack([columns[name] for name in NAMES], axis=-1)
 

@@ -50,7 +50,7 @@ PRIORS = MappingProxyType(
         "doubt": Prior(-0.5),
         "faint": Prior(-4.0),
         "apart": Prior(-1.0, 10.0),
-        "swing": Prior(1.0, 10.0),
+        "swing": Prior(3.0, 10.0),
     }
 )
 

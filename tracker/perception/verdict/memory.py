@@ -15,6 +15,8 @@ from tracker.perception.verdict.owners import hand_size_px
 _REACH_HANDS = 1.5
 #: ... and an unseen one is remembered for so long.
 _FORGET_AFTER_S = 1.0
+#: Arms blur when they move: doubt about a body that was sure comes back in so long, s (guess).
+_DOUBT_S = 2.0
 #: A wave of the hand takes about half a second; so long a time shows two.
 _SWING_S = 1.5
 #: Steps shorter than this, in hand lengths, are noise; so long a way to and fro is a wave.
@@ -32,7 +34,8 @@ class RememberedHand:
         since_ns: When it was first seen.
         log_odds: That it calls; NaN before the first verdict.
         weighed_ns: When that was believed.
-        way: (stamp_ns, column of the hand's middle) in the images of the last `_SWING_S`.
+        faint: How much its owner's arms were doubted when they were seen best of late, 0 to 1.
+        way: (stamp_ns, column of the wrist) in the images of the last `_SWING_S`.
     """
 
     wrist_px: FloatArray
@@ -41,12 +44,25 @@ class RememberedHand:
     since_ns: int
     log_odds: float = float("nan")
     weighed_ns: int = 0
+    faint: float = 1.0
     way: list[tuple[int, float]] = field(default_factory=list)
 
-    def weigh(self, stamp_ns: int, evidence: float) -> float:
-        """The log-odds that the hand calls, after an image's evidence."""
+    def doubt(self, stamp_ns: int, faint: float) -> float:
+        """The doubt about the owner's arms: who was a person a moment ago still is.
+
+        Args:
+            stamp_ns: Of the image.
+            faint: The doubt in this image alone.
+        """
+        passed_s = (stamp_ns - self.weighed_ns) / 1e9 if self.weighed_ns else np.inf
+        self.faint = min(faint, self.faint + passed_s / _DOUBT_S)
+        return self.faint
+
+    def weigh(self, stamp_ns: int, evidence: float, *, is_up: bool = False) -> float:
+        """The log-odds that the hand calls, after an image's evidence; see `update_belief`."""
         passed_s = (stamp_ns - self.weighed_ns) / 1e9
-        self.log_odds, self.weighed_ns = update_belief(self.log_odds, passed_s, evidence), stamp_ns
+        self.log_odds = update_belief(self.log_odds, passed_s, evidence, is_up=is_up)
+        self.weighed_ns = stamp_ns
         return self.log_odds
 
     def swing(self) -> float:
@@ -78,7 +94,6 @@ class HandMemory:
         ]
         rows = _same_rows(kept, hands)
         size_px = hand_size_px(hands)
-        middle_px = hands.landmarks_px[:, 9, 0]
         answer = []
         for row in range(len(hands)):
             if rows[row] < 0:
@@ -89,7 +104,7 @@ class HandMemory:
             item.wrist_px, item.seen_ns = hands.wrist_px[row], stamp_ns
             item.size_px = float(size_px[row])
             item.way = [step for step in item.way if stamp_ns - step[0] <= _SWING_S * 1e9]
-            item.way.append((stamp_ns, float(middle_px[row])))
+            item.way.append((stamp_ns, float(hands.wrist_px[row, 0])))
             answer.append(item)
         self._hands = kept
         return answer

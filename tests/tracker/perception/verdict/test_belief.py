@@ -34,3 +34,18 @@ def test_a_belief_without_evidence_fades_to_the_first():
 
 def test_a_hand_that_goes_down_is_down_within_half_a_second():
     assert after(-4.0, 5, before=LOG_ODDS_MAX) < 0.0
+
+
+def test_a_hand_that_called_and_is_still_up_passes_the_face_in_a_wave():
+    down = before = LOG_ODDS_MAX
+    for _ in range(5):
+        before = update_belief(before, 0.1, -4.0, is_up=True)
+        down = update_belief(down, 0.1, -4.0)
+    assert before > 0.0 > down
+
+
+def test_a_hand_that_stays_at_the_face_is_given_up_in_the_end():
+    before = LOG_ODDS_MAX
+    for _ in range(20):
+        before = update_belief(before, 0.1, -4.0, is_up=True)
+    assert before < 0.0
