@@ -37,8 +37,6 @@ from tracker.perception.verdict.weights import log_odds, reasons
 _ARM_MAX_AGE_S = 0.2
 #: A hand that is less likely than this to call, for itself, waits for a look at its owner.
 _MAY_CALL = -2.0
-#: A wrist so far above the shoulder, in widths of the shoulders, is up.
-_UP = 0.3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,11 +145,11 @@ class CallFinder:
         for row in np.flatnonzero(~seen.is_found):
             faint[row] = known[row].doubt(stamp_ns, float(faint[row]))
         odds = log_odds(evidence)
-        is_up = evidence[:, NAMES.index("high")] > _UP
+        high = evidence[:, NAMES.index("high")]
         belief = np.array(
             [
-                item.weigh(stamp_ns, one, is_up=up)
-                for item, one, up in zip(known, odds.tolist(), is_up.tolist(), strict=True)
+                item.weigh(stamp_ns, *told)
+                for item, *told in zip(known, odds.tolist(), high.tolist(), strict=True)
             ]
         )
         bar = self._bars(stamp_ns, hands, belief > 0.0)

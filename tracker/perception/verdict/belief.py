@@ -9,12 +9,14 @@ from tracker.perception.verdict.weights import (
     FIRST_LOG_ODDS,
     IMAGE_SHARE,
     LOG_ODDS_MAX,
+    NOT_UP_MAX,
     STILL_UP_MIN,
+    UP_SHOULDERS,
 )
 
 
 def update_belief(
-    before: float, passed_s: float, evidence: float, *, is_up: bool = False
+    before: float, passed_s: float, evidence: float, high_shoulders: float = 0.2
 ) -> float:
     """The log-odds that a hand calls, after one more image.
 
@@ -27,11 +29,15 @@ def update_belief(
         before: Log-odds before this image; NaN for a hand that is new.
         passed_s: Since then.
         evidence: Log-odds of this image alone.
-        is_up: Whether the wrist is above the shoulder: a hand that called a moment ago and is
-            still up may pass before the face, as in a wave; it is given up but slowly.
+        high_shoulders: How far the wrist is above the shoulder, in their widths; 0 where it is
+            not, or nobody knows. A hand that called a moment ago and is still up may pass before
+            the face, as in a wave: it is given up but slowly. One that is not up must stay: hands
+            of people who talk show their palms for half a second.
     """
-    if is_up and before > 0.0:
+    if high_shoulders > UP_SHOULDERS[1] and before > 0.0:
         evidence = max(evidence, STILL_UP_MIN)
+    if high_shoulders < UP_SHOULDERS[0]:
+        evidence = min(evidence, NOT_UP_MAX)
     faded = FIRST_LOG_ODDS
     if np.isfinite(before):
         faded += (before - FIRST_LOG_ODDS) * float(np.exp(-passed_s / FADE_S))

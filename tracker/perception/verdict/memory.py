@@ -19,6 +19,8 @@ _FORGET_AFTER_S = 1.0
 _DOUBT_S = 2.0
 #: A wave of the hand takes about half a second; so long a time shows two.
 _SWING_S = 1.5
+#: There and back once is no wave: a hand that was lost and found again does so.
+_TURNS_MIN = 2
 #: Steps shorter than this, in hand lengths, are noise; so long a way to and fro is a wave.
 _STILL_HANDS, _WAVE_HANDS = 0.2, 2.5
 
@@ -58,10 +60,10 @@ class RememberedHand:
         self.faint = min(faint, self.faint + passed_s / _DOUBT_S)
         return self.faint
 
-    def weigh(self, stamp_ns: int, evidence: float, *, is_up: bool = False) -> float:
+    def weigh(self, stamp_ns: int, evidence: float, high_shoulders: float = 0.2) -> float:
         """The log-odds that the hand calls, after an image's evidence; see `update_belief`."""
         passed_s = (stamp_ns - self.weighed_ns) / 1e9
-        self.log_odds = update_belief(self.log_odds, passed_s, evidence, is_up=is_up)
+        self.log_odds = update_belief(self.log_odds, passed_s, evidence, high_shoulders)
         self.weighed_ns = stamp_ns
         return self.log_odds
 
@@ -69,6 +71,8 @@ class RememberedHand:
         """How much the hand goes to and fro: 0 is still, or moves one way; 1 is a wave."""
         steps = np.diff([column for _, column in self.way]) / max(self.size_px, 1.0)
         steps = steps[np.abs(steps) > _STILL_HANDS]
+        if np.count_nonzero(np.diff(np.sign(steps))) < _TURNS_MIN:
+            return 0.0
         to_and_fro = np.abs(steps).sum() - abs(steps.sum())
         return float(min(to_and_fro / _WAVE_HANDS, 1.0))
 

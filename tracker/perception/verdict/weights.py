@@ -18,10 +18,14 @@ FIRST_LOG_ODDS, FADE_S = -1.75, 2.0
 IMAGE_SHARE = 0.5
 #: No belief is stronger than this, so that a hand that goes down is soon noticed.
 LOG_ODDS_MAX = 6.0
-#: Of a hand that calls and is still up no image tells more than this against it.
-STILL_UP_MIN = -0.5
+#: Wrists lower above the shoulder than the first, in widths of the shoulders, are not up; those
+#: higher than the second are.
+UP_SHOULDERS = (0.1, 0.3)
+#: Of a hand that calls and is still up no image tells more than this against it, and of one that
+#: is not up none tells more than that for it.
+STILL_UP_MIN, NOT_UP_MAX = -0.5, 0.75
 #: The log-odds of a hand of which every quantity is 0.
-BIAS = -3.32
+BIAS = -3.28
 
 
 class Weight(NamedTuple):
@@ -37,29 +41,29 @@ class Weight(NamedTuple):
 
 
 WEIGHTS: dict[str, Weight] = {
-    "found": Weight(0.68),
-    "score": Weight(0.54, Refusal.UNSURE),
+    "found": Weight(0.64),
+    "score": Weight(0.53, Refusal.UNSURE),
     "rise": Weight(1.37),
-    "lean": Weight(-0.97, Refusal.LEANS),
+    "lean": Weight(-0.98, Refusal.LEANS),
     "spread": Weight(0.22),
     "thumb": Weight(-2.86),
-    "owned": Weight(0.52),
+    "owned": Weight(0.51),
     "unowned": Weight(-0.29, Refusal.OWNER_UNKNOWN),
     "alone": Weight(2.32),
     "low": Weight(-4.23, Refusal.BELOW_SHOULDERS),
     "palm_low": Weight(-2.26, Refusal.BELOW_SHOULDERS),
-    "high": Weight(3.64),
-    "overhead": Weight(1.32),
-    "forearm": Weight(3.62, Refusal.ARM_DOWN),
-    "head": Weight(-5.54, Refusal.AT_HEAD),
+    "high": Weight(3.68),
+    "overhead": Weight(1.36),
+    "forearm": Weight(3.64, Refusal.ARM_DOWN),
+    "head": Weight(-5.50, Refusal.AT_HEAD),
     "fist_low": Weight(-1.20, Refusal.BELOW_SHOULDERS),
-    "palm_on_head": Weight(-4.21, Refusal.AT_HEAD),
+    "palm_on_head": Weight(-4.17, Refusal.AT_HEAD),
     "inside": Weight(-2.19, Refusal.BEFORE_BODY),
-    "together": Weight(-2.06, Refusal.BEFORE_BODY),
+    "together": Weight(-2.05, Refusal.BEFORE_BODY),
     "doubt": Weight(-1.05, Refusal.OWNER_UNKNOWN),
-    "faint": Weight(-4.61, Refusal.OWNER_UNKNOWN),
+    "faint": Weight(-4.60, Refusal.OWNER_UNKNOWN),
     "apart": Weight(-1.03, Refusal.OWNER_UNKNOWN),
-    "swing": Weight(2.99),
+    "swing": Weight(3.00),
 }
 _LOG_ODDS = np.array([WEIGHTS[name].log_odds for name in NAMES])
 _REASONS = np.array([WEIGHTS[name].reason for name in NAMES])

@@ -39,7 +39,7 @@ def test_a_hand_that_goes_down_is_down_within_half_a_second():
 def test_a_hand_that_called_and_is_still_up_passes_the_face_in_a_wave():
     down = before = LOG_ODDS_MAX
     for _ in range(5):
-        before = update_belief(before, 0.1, -4.0, is_up=True)
+        before = update_belief(before, 0.1, -4.0, 0.5)
         down = update_belief(down, 0.1, -4.0)
     assert before > 0.0 > down
 
@@ -47,5 +47,16 @@ def test_a_hand_that_called_and_is_still_up_passes_the_face_in_a_wave():
 def test_a_hand_that_stays_at_the_face_is_given_up_in_the_end():
     before = LOG_ODDS_MAX
     for _ in range(20):
-        before = update_belief(before, 0.1, -4.0, is_up=True)
+        before = update_belief(before, 0.1, -4.0, 0.5)
     assert before < 0.0
+
+
+def test_a_palm_that_is_not_up_must_stay_longer_than_one_of_people_who_talk():
+    low = up = float("nan")
+    raised = []
+    for _ in range(10):
+        low, up = update_belief(low, 0.1, 3.0, 0.0), update_belief(up, 0.1, 3.0, 0.5)
+        raised.append((low > 0.0, up > 0.0))
+    first_low, first_up = (np.array(raised)[:, row].argmax() for row in (0, 1))
+    assert first_up <= 2
+    assert 5 <= first_low <= 7
