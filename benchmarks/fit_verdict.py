@@ -25,6 +25,7 @@ from rich.table import Table
 
 from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, ImageArray, IntArray
+from tracker.evaluation.detection.clip_study import read_clips
 from tracker.evaluation.detection.looks import jittered_looks
 from tracker.evaluation.detection.scenes import caller_scene, draw_conditions, idlers_scene
 from tracker.evaluation.trials.trial_seed import trial_rng
@@ -39,6 +40,8 @@ from tracker.simulation.scene import Scene
 from tracker.simulation.stream import map_from_camera
 
 LOOKS = 14
+#: In place of raised wrists: the highest hand calls, and of the others nobody knows.
+HIGHEST = np.full((1, 2), np.nan)
 #: Cases that fair judges dispute count less, people of whom there are few pictures more.
 SHARES = {"sign_at_shoulder": 0.4, "fist_beside_head": 0.5, "clips": 3.0, "people_more": 2.0}
 #: A hand is the labeled one within so many lengths of it, or pixels.
@@ -83,6 +86,10 @@ class Watcher:
             if wrists_px is None:
                 calls.append(np.full(len(hands), -1))
                 continue
+            if wrists_px is HIGHEST:
+                rank = hands.wrist_px[:, 1].argsort().argsort()
+                calls.append(np.where(rank == 0, 1, -1))
+                continue
             apart = np.linalg.norm(hands.wrist_px[:, None] - wrists_px, axis=-1)
             near = np.maximum(_NEAR_HANDS * hands.length_px, _NEAR_PX)
             calls.append((apart < near[:, None]).any(axis=1).astype(np.int64))
@@ -108,17 +115,19 @@ def photos(watcher: Watcher, root: Path) -> Iterator[Seen]:
 
 
 def clips(watcher: Watcher, root: Path) -> Iterator[Seen]:
-    """Every clip of a folder: nobody calls, or whose hands do is not known."""
-    table = root / "clips" / "episodes.csv"
-    rows = list(csv.DictReader(table.open(encoding="utf-8"))) if table.is_file() else []
-    for name in sorted({row["clip"] for row in rows if not row["start_s"]}):
-        capture = cv2.VideoCapture(str(root / "clips" / name))
+    """Every clip of a folder; while somebody calls, the highest hand does."""
+    nobody = np.zeros((0, 2))
+    for clip in read_clips(root):
+        capture = cv2.VideoCapture(str(clip.path))
         step = max(round((capture.get(cv2.CAP_PROP_FPS) or 30.0) / 10.0), 1)
         frames = []
         while (got := capture.read())[0]:
             frames.append(got[1])
-        shown = ((bgr, np.zeros((0, 2))) for bgr in frames[::step])
-        yield watcher.play(shown, name.split("_")[0], SHARES["clips"])
+        shown = (
+            (bgr, HIGHEST if any(a <= number / 10.0 <= b for a, b in clip.calls_s) else nobody)
+            for number, bgr in enumerate(frames[::step])
+        )
+        yield watcher.play(shown, clip.path.name.split("_")[0], SHARES["clips"])
 
 
 def drawn(watcher: Watcher, callers: int, idlers: int, seed: int) -> Iterator[Seen]:
@@ -194,7 +203,8 @@ def main() -> None:
     for name, value in weights.items():
         console.print(f"{name} {value:.2f}")
     table = Table("group left out", "hands that call", "others")
-    for group in sorted({item.group for item in seen}):
+    groups = sorted({item.group for item in seen})
+    for group in groups if len(groups) > 1 else ():
         others = fit_weights(*stacked([item for item in seen if item.group != group]))
         table.add_row(group, *told([item for item in seen if item.group == group], *others))
     console.print(table)

@@ -1,6 +1,9 @@
 """How much does each quantity count? One table, fitted by `benchmarks/fit_verdict.py`.
 
-Log-odds per unit of a quantity of `evidence`, by logistic regression with a ridge.
+Log-odds per unit of a quantity of `evidence`, by logistic regression around `fitting.PRIORS`. The
+data: 370 photos of 24 people who call or do not (custom-gesture-dataset, MediaPipe and others,
+14 looks each), 15 clips of signing, waving and ordinary life, 104 drawn scenes of callers at
+1 to 5 m and of people who do something else (seed 901).
 """
 
 from __future__ import annotations
