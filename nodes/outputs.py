@@ -8,7 +8,7 @@ from nodes.topics import Output
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, Tracks
 from tracker.messages import Encoded, encode, encode_markers
-from tracker.perception.drawing import draw_debug_image
+from tracker.report.debug_picture import draw_debug_image
 
 #: Hands a message to the wire.
 Publish = Callable[[Output, Encoded], None]

@@ -9,9 +9,9 @@ from types import TracebackType
 from tracker.config import NODE_NAME, Config
 from tracker.containers import CameraImage, FrameResult, ImageArray, Scan
 from tracker.messages import encode, encode_markers
-from tracker.perception.drawing import draw_debug_image
 from tracker.recording import RecordingWriter
 from tracker.report.birdseye import draw_birdseye
+from tracker.report.debug_picture import draw_debug_image
 from tracker.report.debug_video import DebugVideo, side_by_side
 from tracker.report.tracks_csv import TracksCsv
 from tracker.transforms import StampedTransform

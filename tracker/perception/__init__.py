@@ -1,4 +1,4 @@
-"""Image in, hands out: model files, search, landmarks, following, raise rules, poses, drawing."""
+"""Image in, hands out: model files, search, landmarks, following, poses, the verdict."""
 
 from typing import TYPE_CHECKING, Any
 

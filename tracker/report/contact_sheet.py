@@ -9,8 +9,8 @@ import numpy as np
 
 from tracker.containers import ImageArray
 from tracker.evaluation.detection.photo_study import JudgedPhoto, PhotoStudy
-from tracker.perception.drawing import FINGERS
 from tracker.recording.pictures import read_photo
+from tracker.report.debug_picture import FINGERS
 from tracker.report.palette import INK, LIT, PAPER, PERSON_COLORS, as_bgr
 
 _TILE_PX, _CAPTION_PX, _GAP_PX = 320, 26, 8

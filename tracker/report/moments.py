@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult
-from tracker.perception.drawing import draw_debug_image
+from tracker.report.debug_picture import draw_debug_image
 from tracker.report.page import Picture
 
 _KEPT = 8

@@ -22,7 +22,7 @@ import numpy as np
 from tracker.containers import CameraImage, FloatArray, FrameResult, Hands, Tracks
 from tracker.errors import ConfigError
 from tracker.outputs import GrowingFile, GrowingOutput, unwritable
-from tracker.perception.drawing import FINGER_ROOTS, FINGERS, LOWERED_COLOR, RAISED_COLOR
+from tracker.report.debug_picture import FINGER_ROOTS, FINGERS, LOWERED_COLOR, RAISED_COLOR
 from tracker.report.palette import FADED, LIT, ROBOT, WALL, person_color
 
 _TIMELINE = "stamp"

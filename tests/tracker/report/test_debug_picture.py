@@ -6,7 +6,7 @@ import pytest
 
 from tracker.config import Config
 from tracker.containers import CameraImage, Hands, Refusal, Tracks
-from tracker.perception.drawing import draw_debug_image
+from tracker.report.debug_picture import draw_debug_image
 
 
 @pytest.fixture
