@@ -2,14 +2,13 @@
 
 from typing import TYPE_CHECKING, Any
 
-from tracker.perception.body_detector import BodyDetector
 from tracker.perception.detector import HandDetector
 
 if TYPE_CHECKING:
     from tracker.perception.hand_finder import HandFinder
     from tracker.perception.opening import open_detector
 
-__all__ = ["BodyDetector", "HandDetector", "HandFinder", "open_detector"]
+__all__ = ["HandDetector", "HandFinder", "open_detector"]
 
 
 def __getattr__(name: str) -> Any:

@@ -55,7 +55,6 @@ SHOULDERS = [Joint.LEFT_SHOULDER, Joint.RIGHT_SHOULDER]
 ELBOWS = [Joint.LEFT_ELBOW, Joint.RIGHT_ELBOW]
 WRISTS = [Joint.LEFT_WRIST, Joint.RIGHT_WRIST]
 HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
-KNEES = [Joint.LEFT_KNEE, Joint.RIGHT_KNEE]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,10 +121,6 @@ class Bodies:
     def grown_older(self, passed_s: float) -> Bodies:
         """The same people, as long after."""
         return replace(self, age_s=self.age_s + passed_s)
-
-    def aligned(self, alignment_px: FloatArray) -> Bodies:
-        """The same people, with where to look for them next."""
-        return replace(self, alignment_px=alignment_px)
 
     @property
     def arms_up(self) -> BoolArray:

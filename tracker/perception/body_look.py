@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -12,90 +11,101 @@ from tracker.containers import ImageArray
 from tracker.perception.bodies import Bodies
 from tracker.perception.models import ModelStore
 from tracker.perception.palm_search import Window
-from tracker.perception.pose_file import PoseFile
 from tracker.perception.pose_landmarks import PoseReader
 from tracker.perception.pose_search import PoseSearch, regions_from_alignment
+from tracker.perception.strips import upright_strips
 
 #: People of a window whose joints are read, the surest first.
 _READS = 2
-#: The window around somebody known is so many times as large as what was seen of them.
-_MARGIN = 1.4
+#: Two regions whose centers are closer than this, in sides, hold the same person: a third of a
+#: meter, as a side measures about 2.4 m of a person who stands (guess).
+_SAME_PERSON_SIDES = 0.15
+_NOBODY = Bodies.none()
 
 
 class BodyLook(Protocol):
-    """One look of a pose model."""
+    """One look of a pose model: the one interface behind which any of them stands."""
 
-    def around(self, bgr: ImageArray, window: Window) -> Bodies:
-        """Everybody whom it sees in a window of the picture."""
+    def windows(self, width: int, height: int) -> list[Window]:
+        """The parts of a picture of so many pixels in which it sees everybody."""
         ...
 
-    def again(self, bgr: ImageArray, body: Bodies) -> Bodies:
-        """One known body, as it is in this picture; nobody where it is gone."""
+    def around(
+        self, bgr: ImageArray, window: Window, known: Bodies = _NOBODY, most: int = _READS
+    ) -> Bodies:
+        """Everybody whom it sees in a window of the picture.
+
+        Args:
+            bgr: Shape (height, width, 3), the full image.
+            window: Left, top, width, height of the part, inside the picture.
+            known: Who need not be told again.
+            most: So many people are enough, where each costs time.
+
+        Raises:
+            ModelFileError: The model fails.
+        """
+        ...
+
+    def again(self, bgr: ImageArray, known: Bodies) -> Bodies:
+        """Somebody known, as they are in this picture; nobody where they are gone."""
+        ...
+
+    def configure(self, config: Config) -> None:
+        """Take over changed parameters; the model stays."""
         ...
 
 
 class MediapipeLook:
-    """MediaPipe's pose models; somebody known is read without a search.
+    """MediaPipe's pose models; everybody known is read without a search.
 
     Args:
-        store: Where the model files live.
+        searcher: Finds people.
+        reader: Reads their joints.
         config: The pose group.
 
-    Raises:
-        ModelFileError: A model file is absent or unusable; the message says how to fetch it.
-        ConfigError: ONNX Runtime has no such execution provider.
+    Source: Bazarevsky et al., "BlazePose: On-device Real-time Body Pose Tracking", 2020.
     """
 
-    def __init__(self, store: ModelStore, config: Config) -> None:
+    def __init__(self, searcher: PoseSearch, reader: PoseReader, config: Config) -> None:
+        self._searcher = searcher
+        self._reader = reader
+        self.configure(config)
+
+    @staticmethod
+    def open(store: ModelStore, config: Config) -> MediapipeLook:
+        """The pose models of a store.
+
+        Raises:
+            ModelFileError, ConfigError: As `open_session`.
+        """
         threads, provider = config.inference_threads, config.execution_provider
-        self._searcher = PoseSearch.open(store, threads=threads, provider=provider)
-        self._reader = PoseReader.open(store, threads=threads, provider=provider)
+        return MediapipeLook(
+            PoseSearch.open(store, threads=threads, provider=provider),
+            PoseReader.open(store, threads=threads, provider=provider),
+            config,
+        )
+
+    def windows(self, width: int, height: int) -> list[Window]:
+        """Upright strips: the detector sees the most prominent people of a picture alone."""
+        return upright_strips(width, height)
+
+    def around(
+        self, bgr: ImageArray, window: Window, known: Bodies = _NOBODY, most: int = _READS
+    ) -> Bodies:
+        """People of a window who are not known, the surest of them."""
+        found = self._searcher.find(bgr, window, self._score_min)
+        there_px = regions_from_alignment(known.alignment_px).center_px
+        apart = np.linalg.norm(found.center_px[:, None] - there_px[None], axis=-1)
+        is_new = ~(apart < _SAME_PERSON_SIDES * found.side_px[:, None]).any(axis=1)
+        return self._believed(self._reader.read(bgr, found[is_new][:most]))
+
+    def again(self, bgr: ImageArray, known: Bodies) -> Bodies:
+        """People known, read anew."""
+        return self._believed(self._reader.read(bgr, regions_from_alignment(known.alignment_px)))
+
+    def configure(self, config: Config) -> None:
+        """Take over changed parameters; the models stay."""
         self._score_min = config.pose_confidence
 
-    def around(self, bgr: ImageArray, window: Window) -> Bodies:
-        """Everybody whom the models see in a window, the surest two."""
-        regions = self._searcher.find(bgr, window, self._score_min)[:_READS]
-        bodies, alignment_px = self._reader.read(bgr, regions)
-        bodies = bodies.aligned(alignment_px)
+    def _believed(self, bodies: Bodies) -> Bodies:
         return bodies[bodies.score >= self._score_min]
-
-    def again(self, bgr: ImageArray, body: Bodies) -> Bodies:
-        """One known body, read anew."""
-        bodies, alignment_px = self._reader.read(bgr, regions_from_alignment(body.alignment_px))
-        bodies = bodies.aligned(alignment_px)
-        return bodies[bodies.score >= self._score_min]
-
-
-class FileLook:
-    """The pose model in the user's own file, which looks at windows alone.
-
-    Args:
-        config: `pose_model` and the pose group.
-
-    Raises:
-        ModelFileError: The file is absent, no ONNX file, or of no layout that is understood.
-        ConfigError: ONNX Runtime has no such execution provider.
-    """
-
-    def __init__(self, config: Config) -> None:
-        self._model = PoseFile.open(Path(config.pose_model), config)
-        self._score_min = config.pose_confidence
-
-    def around(self, bgr: ImageArray, window: Window) -> Bodies:
-        """Everybody whom the model sees in a window."""
-        bodies = self._model.look(bgr, window)
-        return bodies[bodies.score >= self._score_min]
-
-    def again(self, bgr: ImageArray, body: Bodies) -> Bodies:
-        """Whoever is nearest to where somebody known was."""
-        points = body.points_px[0][body.is_visible[0]]
-        low, high = points.min(axis=0), points.max(axis=0)
-        middle, half = (low + high) / 2, _MARGIN * (high - low).max() / 2
-        size = (bgr.shape[1], bgr.shape[0])
-        left, top = np.clip(middle - half, 0, size).astype(int).tolist()
-        right, bottom = np.clip(middle + half, 0, size).astype(int).tolist()
-        if right <= left or bottom <= top:
-            return Bodies.none()
-        found = self.around(bgr, (left, top, right - left, bottom - top))
-        apart = np.linalg.norm(found.points_px - body.points_px, axis=-1).mean(axis=-1)
-        return found[np.argsort(apart, kind="stable")[:1]]

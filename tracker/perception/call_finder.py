@@ -194,3 +194,5 @@ class CallFinder:
         """
         self._hands.configure(config)
         self._config = config
+        if self._watch is not None:
+            self._watch.configure(config)

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from tracker.config import Config
-from tracker.perception.body_detector import BodyDetector
-from tracker.perception.body_finder import BodyFinder
-from tracker.perception.body_look import FileLook, MediapipeLook
+from tracker.perception.body_look import BodyLook, MediapipeLook
 from tracker.perception.call_finder import CallFinder
 from tracker.perception.detector import HandDetector
 from tracker.perception.hand_finder import HandFinder
 from tracker.perception.mediapipe_hands import MediapipeHands
 from tracker.perception.models import ModelStore
 from tracker.perception.people_watch import PeopleWatch
-from tracker.perception.pose_file import PoseFileFinder
+from tracker.perception.pose_file import PoseFile
 from tracker.perception.pose_hands import PoseHands
 
 
@@ -31,18 +27,16 @@ def open_detector(config: Config, store: ModelStore | None = None) -> HandDetect
     """
     store = store or ModelStore()
     if config.detector == "pose":
-        return PoseHands(_open_bodies(config, store), config)
+        return PoseHands(_open_look(config, store), config)
     if config.detector == "mediapipe":
         return MediapipeHands(config)
     hands = HandFinder(config, store)
     if config.raise_rule != "evidence":
         return hands
-    look = FileLook(config) if config.pose_model else MediapipeLook(store, config)
-    watch = None if config.pose_opinion == "none" else PeopleWatch(look)
+    asks_bodies = config.pose_opinion != "none"
+    watch = PeopleWatch(_open_look(config, store)) if asks_bodies else None
     return CallFinder(hands, watch, config)
 
 
-def _open_bodies(config: Config, store: ModelStore) -> BodyDetector:
-    if config.pose_model:
-        return PoseFileFinder.open(Path(config.pose_model), config)
-    return BodyFinder.open(config, store)
+def _open_look(config: Config, store: ModelStore) -> BodyLook:
+    return PoseFile.open(config) if config.pose_model else MediapipeLook.open(store, config)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tracker.config import Config
 from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, IntArray
 from tracker.perception.bodies import Bodies, one_row_each
 from tracker.perception.body_look import BodyLook
@@ -71,6 +72,10 @@ class PeopleWatch:
         self._strips: list[Window] = []
         self._moved_ns = self._looked_ns = np.zeros(0)
         self._strip_ns = 0.0
+
+    def configure(self, config: Config) -> None:
+        """Take over changed parameters, from the next image on."""
+        self._look.configure(config)
 
     @property
     def looks_next(self) -> bool:

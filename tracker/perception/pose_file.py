@@ -12,17 +12,16 @@ import onnxruntime
 from onnxruntime.capi import onnxruntime_pybind11_state as runtime_errors
 
 from tracker.config import Config
-from tracker.containers import CameraImage, ImageArray
+from tracker.containers import ImageArray
 from tracker.errors import ModelFileError
-from tracker.perception.bodies import Bodies, one_row_each
-from tracker.perception.known_bodies import KnownBodies
+from tracker.perception.bodies import Bodies
 from tracker.perception.palm_search import Window
 from tracker.perception.pose_layouts import PoseLayout, recognize
 from tracker.perception.sessions import open_file
 from tracker.perception.strips import upright_strips
 
-#: Somebody not found again for so long, in seconds, is forgotten (guess).
-_FORGET_AFTER_S = 1.0
+#: The window around somebody known is so many times as large as what was seen of them.
+_MARGIN = 1.4
 _NUMBERS: dict[str, Any] = {
     "tensor(float)": np.float32,
     "tensor(float16)": np.float16,
@@ -32,20 +31,21 @@ _NUMBERS: dict[str, Any] = {
 
 
 class PoseFile:
-    """A pose model in an ONNX file.
+    """A pose model in an ONNX file, as `BodyLook`.
 
     Args:
         session: The opened file.
         origin: Its name, for messages.
+        config: The pose group.
 
     Raises:
         ModelFileError: Its inputs and outputs are of no layout that is understood.
     """
 
-    def __init__(self, session: onnxruntime.InferenceSession, origin: str) -> None:
+    def __init__(self, session: onnxruntime.InferenceSession, origin: str, config: Config) -> None:
         self._session = session
         self._origin = origin
-        self.layout: PoseLayout = recognize(
+        self._layout: PoseLayout = recognize(
             origin, _shapes(session.get_inputs()), _shapes(session.get_outputs())
         )
         (self._input,) = session.get_inputs()
@@ -54,43 +54,67 @@ class PoseFile:
                 f"{origin} wants {self._input.type} as its input; needed is one of "
                 f"{', '.join(_NUMBERS)}."
             )
+        self.configure(config)
 
     @staticmethod
-    def open(path: Path, config: Config) -> PoseFile:
-        """The model of an ONNX file.
+    def open(config: Config) -> PoseFile:
+        """The file that `pose_model` names.
 
         Raises:
-            ModelFileError: The file is absent, no ONNX file, or of no layout that is understood.
+            ModelFileError: It is absent, no ONNX file, or of no layout that is understood.
             ConfigError: ONNX Runtime has no such execution provider.
         """
         session = open_file(
-            path.expanduser(),
+            Path(config.pose_model).expanduser(),
             threads=config.inference_threads,
             provider=config.execution_provider,
             remedy="`pose_model` must name a file in ONNX format, or be empty",
         )
-        return PoseFile(session, str(path))
+        return PoseFile(session, config.pose_model, config)
 
-    def look(self, bgr: ImageArray, window: Window) -> Bodies:
-        """Everybody whom the model sees in a part of the picture, however unsure.
+    def windows(self, width: int, height: int) -> list[Window]:
+        """The whole picture; strips for models that take one person for granted."""
+        if self._layout.one_person:
+            return upright_strips(width, height)
+        return [(0, 0, width, height)]
 
-        Args:
-            bgr: Shape (height, width, 3), the full image.
-            window: Left, top, width, height of the part, inside the picture.
+    def around(
+        self, bgr: ImageArray, window: Window, known: Bodies | None = None, most: int = 0
+    ) -> Bodies:
+        """Everybody whom the model sees in a part of the picture, known or not."""
+        bodies = self._look(bgr, window)
+        return bodies[bodies.score >= self._score_min]
 
-        Raises:
-            ModelFileError: The model fails, or its answers are not what its layout promises.
-        """
+    def again(self, bgr: ImageArray, known: Bodies) -> Bodies:
+        """Whoever is nearest to where somebody known, one alone, was."""
+        points = known.points_px[0][known.is_visible[0]]
+        low, high = points.min(axis=0), points.max(axis=0)
+        middle, half = (low + high) / 2, _MARGIN * (high - low).max() / 2
+        size = (bgr.shape[1], bgr.shape[0])
+        left, top = np.clip(middle - half, 0, size).astype(int).tolist()
+        right, bottom = np.clip(middle + half, 0, size).astype(int).tolist()
+        if right <= left or bottom <= top:
+            return Bodies.none()
+        found = self.around(bgr, (left, top, right - left, bottom - top))
+        apart = np.linalg.norm(found.points_px - known.points_px, axis=-1).mean(axis=-1)
+        return found[np.argsort(apart, kind="stable")[:1]]
+
+    def configure(self, config: Config) -> None:
+        """Take over changed parameters; the model stays."""
+        self._score_min = config.pose_confidence
+
+    def _look(self, bgr: ImageArray, window: Window) -> Bodies:
+        """Everybody in a window, however unsure."""
         left, top, width, height = window
         (shape,) = _shapes([self._input]).values()
-        size = self.layout.input_size(shape)
+        size = self._layout.input_size(shape)
         part = bgr[top : top + height, left : left + width]
-        picture, per_px = fit(part, size, self.layout.fill)
-        numbers = self.layout.pack(picture, _NUMBERS[self._input.type])
+        picture, per_px = fit(part, size, self._layout.fill)
+        numbers = self._layout.pack(picture, _NUMBERS[self._input.type])
         names = [output.name for output in self._session.get_outputs()]
         try:
             answers = self._session.run(names, {self._input.name: numbers})
-            bodies = self.layout.decode(dict(zip(names, answers, strict=True)), size)
+            bodies = self._layout.decode(dict(zip(names, answers, strict=True)), size)
         except (
             runtime_errors.Fail,
             runtime_errors.InvalidArgument,
@@ -99,59 +123,11 @@ class PoseFile:
         ) as error:
             reason = str(error).splitlines()[0]
             raise ModelFileError(
-                f"{self._origin} looks like {self.layout.name} but does not answer like it "
+                f"{self._origin} looks like {self._layout.name} but does not answer like it "
                 f"({reason}); export it anew, for batches of one picture."
             ) from error
         points = np.where(np.isfinite(bodies.points_px), bodies.points_px, np.nan)
         return replace(bodies, points_px=points / per_px + (left, top))
-
-
-class PoseFileFinder(KnownBodies):
-    """A pose model of the user's own as `BodyDetector`.
-
-    Models for one person look at one upright strip after the other, the rest at whole pictures.
-
-    Args:
-        model: The opened file.
-        config: The pose group.
-    """
-
-    def __init__(self, model: PoseFile, config: Config) -> None:
-        super().__init__(config)
-        self._model = model
-
-    @staticmethod
-    def open(path: Path, config: Config) -> PoseFileFinder:
-        """The model of an ONNX file.
-
-        Raises:
-            ModelFileError: The file is absent, no ONNX file, or of no layout that is understood.
-            ConfigError: ONNX Runtime has no such execution provider.
-        """
-        return PoseFileFinder(PoseFile.open(path, config), config)
-
-    def reset(self) -> None:
-        """Forget everybody."""
-        super().reset()
-        self._looks = 0
-
-    def _look(self, image: CameraImage, known: Bodies) -> Bodies:
-        known = known[:0] if self._sees_all else known[known.age_s <= _FORGET_AFTER_S]
-        known = Bodies.concatenate(self._seen_now(image), known)
-        return known[one_row_each(known)]
-
-    @property
-    def _sees_all(self) -> bool:
-        return not self._model.layout.one_person
-
-    def _seen_now(self, image: CameraImage) -> Bodies:
-        windows: list[Window] = [(0, 0, image.width, image.height)]
-        if not self._sees_all:
-            windows = upright_strips(image.width, image.height)
-        window = windows[self._looks % len(windows)]
-        self._looks += 1
-        found = self._model.look(image.bgr, window)
-        return found[found.score >= self._config.pose_confidence]
 
 
 def fit(bgr: ImageArray, size: tuple[int, int], fill: int) -> tuple[ImageArray, float]:

@@ -6,9 +6,10 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, Refusal
-from tracker.perception.bodies import ELBOWS, WRISTS, Bodies
-from tracker.perception.body_detector import BodyDetector
-from tracker.perception.pose_rules import judge_arms
+from tracker.perception.bodies import ELBOWS, SHOULDERS, WRISTS, Bodies, one_row_each
+from tracker.perception.body_look import BodyLook
+from tracker.perception.pictures import continues
+from tracker.perception.verdict.owners import head_distance_px
 from tracker.perception.verdict.raise_rules import judge_raised
 
 #: Adults' palms, from the wrist to the middle finger's root, against the width of the shoulders
@@ -31,30 +32,50 @@ _OPEN_HAND = np.array(
 class PoseHands:
     """`detector: pose`: every wrist of a pose model is a hand, raised where the arm is.
 
+    One part of the picture is searched in an image; whoever was found is followed, where the
+    model can do so without a search.
+
     Args:
-        bodies: The pose model.
+        look: The pose model.
         config: The pose group.
     """
 
-    def __init__(self, bodies: BodyDetector, config: Config) -> None:
-        self._bodies = bodies
+    def __init__(self, look: BodyLook, config: Config) -> None:
+        self._look = look
         self._config = config
+        self.reset()
 
     def find(self, image: CameraImage) -> Hands:
-        """Hands at the wrists seen in this very image, in pixels of the full image."""
-        bodies = self._bodies.find(image)
-        bodies = bodies[bodies.age_s == 0.0]
+        """Hands at the wrists seen in this very image, in pixels of the full image.
+
+        A stamp that jumps back, another frame_id or another size of the image starts anew.
+        """
+        if self._last is not None and not continues(self._last, image):
+            self.reset()
+        self._last = image
+        windows = self._look.windows(image.width, image.height)
+        window = windows[self._looks % len(windows)]
+        self._looks += 1
+        known = self._known[: self._config.max_hands]
+        room = self._config.max_hands - len(known)
+        bodies = self._look.around(image.bgr, window, known, room)
+        if len(known):
+            bodies = Bodies.concatenate(bodies, self._look.again(image.bgr, known))
+        bodies = bodies[one_row_each(bodies)]
+        self._known = bodies[np.isfinite(bodies.alignment_px).all(axis=(1, 2))]
         arms = bodies.is_visible[:, WRISTS] & np.isfinite(bodies.shoulder_px)[:, None]
         return draw_hands(bodies, arms, (image.width, image.height), self._config)
 
     def reset(self) -> None:
         """Forget the people of earlier images."""
-        self._bodies.reset()
+        self._last: CameraImage | None = None
+        self._known = Bodies.none()
+        self._looks = 0
 
     def configure(self, config: Config) -> None:
         """Take over changed parameters, from the next image on."""
         self._config = config
-        self._bodies.configure(config)
+        self._look.configure(config)
 
 
 def draw_hands(
@@ -85,16 +106,16 @@ def draw_hands(
     across = np.where(toward_body[:, None], across, -across)
     axes = np.stack([across, fingers], axis=1)
     landmarks = wrist[:, None] + palm_px[:, None, None] * (_OPEN_HAND @ axes)
-    raised, _ = judge_arms(bodies, config)
+    raised = judge_arms(bodies, config)[person, side]
     _, measure = judge_raised(landmarks, image_size, config)
     return Hands(
         landmarks,
         bodies.visibility[person, np.array(WRISTS)[side]],
         side.astype(np.float64),
-        raised[person, side],
+        raised,
         measure,
         torso,
-        refusal=np.where(raised[person, side], Refusal.NO_REASON, Refusal.ARM_DOWN),
+        refusal=np.where(raised, Refusal.NO_REASON, Refusal.ARM_DOWN),
     )
 
 
@@ -106,3 +127,22 @@ def _fingers_direction(bodies: Bodies) -> FloatArray:
     return np.where(
         known[..., None], along / np.maximum(length, 1.0)[..., None], np.array([0.0, -1.0])
     )
+
+
+def judge_arms(bodies: Bodies, config: Config) -> BoolArray:
+    """Arms whose wrist is well above the shoulder, and not at the head, as with a telephone.
+
+    Args:
+        bodies: Who is there.
+        config: `pose_raised_threshold` and `pose_head_clearance`.
+
+    Returns:
+        Shape (P, 2), left arm first; an arm that is not seen is down.
+    """
+    seen, points = bodies.is_visible, bodies.points_px
+    width = bodies.shoulder_px[:, None]
+    rise_px = points[:, SHOULDERS, 1] - points[:, WRISTS, 1]
+    rise = np.where(seen[:, SHOULDERS] & seen[:, WRISTS], rise_px / width, np.nan)
+    head_px = np.stack([head_distance_px(bodies, points[:, wrist]) for wrist in WRISTS], axis=-1)
+    is_clear = ~(head_px < config.pose_head_clearance * width)
+    return (rise > config.pose_raised_threshold) & is_clear

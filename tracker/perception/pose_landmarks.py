@@ -44,16 +44,12 @@ class PoseReader:
             )
         )
 
-    def read(self, bgr: ImageArray, regions: Regions) -> tuple[Bodies, FloatArray]:
-        """Look at each region of a picture.
+    def read(self, bgr: ImageArray, regions: Regions) -> Bodies:
+        """The people in each region of a picture, and where to look for them next.
 
         Args:
             bgr: Shape (height, width, 3), the full image.
             regions: In its pixels; what lies outside of the picture repeats its edge.
-
-        Returns:
-            The bodies, and where to look for them next: shape (R, 2, 2), see
-            `regions_from_alignment`.
         """
         to_image = image_from_input(regions, INPUT_PX)
         landmarks = np.zeros((len(regions), 39, 5))
@@ -66,8 +62,13 @@ class PoseReader:
         points_px += to_image[:, None, :, 2]
         # Both: hidden behind something, or outside of the picture.
         visible = _probability(landmarks[..., 3]) * _probability(landmarks[..., 4])
-        bodies = Bodies.seen_now(points_px[:, _JOINT_ROWS], visible[:, _JOINT_ROWS], score)
-        return bodies, points_px[:, _ALIGNMENT_ROWS]
+        return Bodies(
+            points_px[:, _JOINT_ROWS],
+            visible[:, _JOINT_ROWS],
+            score,
+            np.zeros(len(regions)),
+            points_px[:, _ALIGNMENT_ROWS],
+        )
 
 
 def _probability(logits: FloatArray) -> FloatArray:

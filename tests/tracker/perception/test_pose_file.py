@@ -6,10 +6,8 @@ import pytest
 from onnx import TensorProto, helper, numpy_helper
 
 from tracker.config import Config
-from tracker.containers import CameraImage
 from tracker.errors import ModelFileError
-from tracker.perception import BodyDetector
-from tracker.perception.pose_file import PoseFileFinder, fit
+from tracker.perception.pose_file import PoseFile, fit
 
 
 @pytest.fixture
@@ -46,9 +44,9 @@ def joints(points_px):
 
 
 def rtmo(write):
-    people = np.array([[[0, 0, 1, 1, 0.9], [0, 0, 1, 1, 0.1]]], np.float32)
+    boxes = np.array([[[0, 0, 1, 1, 0.9], [0, 0, 1, 1, 0.1]]], np.float32)
     keypoints = np.stack([joints(STANDS_AT), joints((9, 9))])[None]
-    return write((1, 3, 640, 640), {"dets": people, "keypoints": keypoints})
+    return write((1, 3, 640, 640), {"dets": boxes, "keypoints": keypoints})
 
 
 def yolo(write):
@@ -69,19 +67,19 @@ def movenet_of_bytes(write):
     return movenet(write, TensorProto.UINT8)
 
 
-def open_finder(path, **parameters):
-    return PoseFileFinder.open(path, Config().replace(**parameters))
+def open_file(path, **parameters):
+    return PoseFile.open(Config().replace(pose_model=str(path), **parameters))
 
 
-def image(number=0, width=640, height=480):
-    return CameraImage(number * 100_000_000, "", np.zeros((height, width, 3), np.uint8))
+def people(model, width=640, height=480, *, window=0):
+    """Whom a model sees in one of its windows."""
+    bgr = np.zeros((height, width, 3), np.uint8)
+    return model.around(bgr, model.windows(width, height)[window])
 
 
 @pytest.mark.parametrize("make", [rtmo, yolo, movenet, movenet_of_bytes])
 def test_a_model_of_the_whole_picture_gives_bodies_in_its_pixels(write, make):
-    finder = open_finder(make(write))
-    assert isinstance(finder, BodyDetector)
-    bodies = finder.find(image())
+    bodies = people(open_file(make(write)))
     assert len(bodies) == 1
     np.testing.assert_allclose(bodies.points_px[0], joints(STANDS_AT)[:, :2], atol=1e-3)
     np.testing.assert_allclose(bodies.score, 0.9)
@@ -89,7 +87,7 @@ def test_a_model_of_the_whole_picture_gives_bodies_in_its_pixels(write, make):
 
 
 def test_a_larger_picture_is_shrunk_and_its_bodies_enlarged(write):
-    bodies = open_finder(rtmo(write)).find(image(width=1280, height=960))
+    bodies = people(open_file(rtmo(write)), width=1280, height=960)
     np.testing.assert_allclose(bodies.points_px[0], 2 * joints(STANDS_AT)[:, :2], atol=1e-3)
 
 
@@ -97,52 +95,43 @@ def test_a_model_for_one_person_looks_at_strip_after_strip(write):
     x, y = np.zeros((1, 17, 384), np.float32), np.zeros((1, 17, 512), np.float32)
     x[0, np.arange(17), 100 + np.arange(17)], y[0, :, 256] = 0.9, 0.9
     path = write((1, 3, 256, 192), {"simcc_x": x, "simcc_y": y})
-    finder = open_finder(path)
+    model = open_file(path)
     # A strip of 240 by 480 is 256 pixels high there: x = 50 of 192 is 93.75 of the strip.
     for number, left in enumerate((0, 100, 200)):
-        bodies = finder.find(image(number))
-        newest = bodies[bodies.age_s == 0.0]
-        np.testing.assert_allclose(newest.points_px[0, 0], [left + 93.75, 240], atol=1e-3)
-        assert len(bodies) == number + 1
-
-
-def test_a_jump_back_starts_anew(write):
-    finder = open_finder(rtmo(write))
-    finder.find(image(5))
-    finder.find(image(6))
-    assert finder.find(image(0)).age_s.tolist() == [0.0]
+        (points,) = people(model, window=number).points_px
+        np.testing.assert_allclose(points[0], [left + 93.75, 240], atol=1e-3)
 
 
 def test_an_unsure_person_is_nobody(write):
-    assert len(open_finder(rtmo(write), pose_confidence=0.95).find(image())) == 0
+    assert len(people(open_file(rtmo(write), pose_confidence=0.95))) == 0
 
 
 def test_points_that_are_no_numbers_are_not_seen(write):
-    people = np.array([[[0, 0, 1, 1, 0.9]]], np.float32)
+    boxes = np.array([[[0, 0, 1, 1, 0.9]]], np.float32)
     keypoints = joints(STANDS_AT)[None, None].copy()
     keypoints[0, 0, 3, 0] = np.inf
-    path = write((1, 3, 640, 640), {"dets": people, "keypoints": keypoints})
-    bodies = open_finder(path).find(image())
+    path = write((1, 3, 640, 640), {"dets": boxes, "keypoints": keypoints})
+    bodies = people(open_file(path))
     assert np.flatnonzero(~bodies.is_visible[0]).tolist() == [3]
 
 
 def test_a_file_of_another_layout_is_refused(write):
     path = write((1, 3, 8, 8), {"classes": np.zeros((1, 1000), np.float32)})
     with pytest.raises(ModelFileError, match=r"pose\.onnx has inputs picture \[1, 3, 8, 8\]"):
-        open_finder(path)
+        open_file(path)
 
 
 def test_a_file_with_an_unusual_input_is_refused(write):
     path = write((1, 56, 56, 3), {"out": np.zeros((1, 6, 56), np.float32)}, dtype=TensorProto.BOOL)
     with pytest.raises(ModelFileError, match=r"wants tensor\(bool\)"):
-        open_finder(path)
+        open_file(path)
 
 
 def test_a_model_that_does_not_answer_as_its_layout_promises_is_named(write):
-    people = np.zeros((1, 2, 5), np.float32)
-    path = write((1, 3, 640, 640), {"dets": people, "keypoints": np.zeros((1, 3, 17, 3), "f4")})
+    boxes = np.zeros((1, 2, 5), np.float32)
+    path = write((1, 3, 640, 640), {"dets": boxes, "keypoints": np.zeros((1, 3, 17, 3), "f4")})
     with pytest.raises(ModelFileError, match=r"looks like RTMO but does not answer like it"):
-        open_finder(path).find(image())
+        people(open_file(path))
 
 
 @pytest.mark.parametrize("content", [None, b"text"], ids=["absent", "text"])
@@ -151,7 +140,7 @@ def test_a_file_that_is_no_model_is_named_with_the_parameter(tmp_path, content):
     if content is not None:
         path.write_bytes(content)
     with pytest.raises(ModelFileError, match=r"mine\.onnx.*`pose_model`"):
-        open_finder(path)
+        open_file(path)
 
 
 def test_a_picture_is_fitted_into_the_corner_and_the_rest_filled():

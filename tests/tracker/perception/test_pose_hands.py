@@ -1,29 +1,29 @@
 import numpy as np
+import pytest
 
 from tracker.config import Config
 from tracker.containers import CameraImage
 from tracker.perception import HandDetector
 from tracker.perception.bodies import Bodies
-from tracker.perception.pose_hands import PoseHands, draw_hands
+from tracker.perception.pose_hands import PoseHands, draw_hands, judge_arms
 
 SIZE = (640, 480)
-UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
+UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}  # 30 px, 0.75 widths, above
 BOTH = np.array([[True, True]])
 
 
 class Seen:
-    """A body detector that sees the same people always."""
+    """A look that sees the same people always, and cannot follow them."""
 
     def __init__(self, bodies):
         self.bodies = bodies
-        self.was_reset = False
         self.config = None
 
-    def find(self, image):
-        return self.bodies
+    def windows(self, width, height):
+        return [(0, 0, width, height)]
 
-    def reset(self):
-        self.was_reset = True
+    def around(self, bgr, window, known, most):
+        return self.bodies
 
     def configure(self, config):
         self.config = config
@@ -39,11 +39,6 @@ def test_each_wrist_is_a_hand_and_the_arm_decides(body):
     assert hands.raised.tolist() == [False, True]
     assert hands.right.tolist() == [0.0, 1.0]
     np.testing.assert_allclose(hands.torso_px, [[200, 128], [200, 128]])
-
-
-def test_who_was_not_looked_at_in_this_image_has_no_hands(body):
-    people = Bodies.concatenate(body(**UP), body(age_s=0.1, shift_px=(200, 0), **UP))
-    assert len(PoseHands(Seen(people), Config()).find(image())) == 2
 
 
 def test_a_wrist_that_is_not_seen_is_no_hand(body):
@@ -86,12 +81,52 @@ def test_nobody_has_no_hands():
     assert len(PoseHands(Seen(Bodies.none()), Config()).find(image())) == 0
 
 
-def test_reset_and_parameters_reach_the_bodies(body):
+def test_parameters_reach_the_model(body):
     seen = Seen(body(**UP))
     detector = PoseHands(seen, Config())
     assert isinstance(detector, HandDetector)
-    detector.reset()
     detector.configure(Config(pose_raised_threshold=2.0))
-    assert seen.was_reset
     assert seen.config == Config(pose_raised_threshold=2.0)
     assert not detector.find(image()).raised.any()
+
+
+def raised(bodies, **changes):
+    return judge_arms(bodies, Config().replace(**changes)).tolist()
+
+
+def test_arms_that_hang_are_down(body):
+    assert raised(body()) == [[False, False]]
+
+
+@pytest.mark.parametrize(("threshold", "up"), [(0.74, True), (0.76, False)])
+def test_the_threshold_is_in_widths_of_the_shoulders(body, threshold, up):
+    assert raised(body(**UP), pose_raised_threshold=threshold) == [[False, up]]
+
+
+def test_the_verdict_does_not_depend_on_the_distance(body):
+    near = body(**UP)
+    far = Bodies.seen_now(near.points_px / 4.0, near.visibility, near.score)
+    assert raised(far) == raised(near) == [[False, True]]
+
+
+@pytest.mark.parametrize(
+    "wrist",
+    [(183, 72), (195, 75), (192, 38)],
+    ids=["telephone at the ear", "cup at the mouth", "scratching the head"],
+)
+def test_a_hand_at_the_head_is_not_up(body, wrist):
+    assert raised(body(right_wrist=wrist)) == [[False, False]]
+
+
+def test_a_straight_arm_beside_the_head_is_up(body):
+    assert raised(body(right_wrist=(178, 20))) == [[False, True]]
+
+
+@pytest.mark.parametrize("hidden", ["right_wrist", "right_shoulder"])
+def test_an_arm_that_is_not_seen_is_down(body, hidden):
+    assert raised(body(**{**UP, hidden: None})) == [[False, False]]
+
+
+def test_without_a_head_the_rise_alone_decides(body):
+    head = dict.fromkeys(("nose", "left_eye", "right_eye", "left_ear", "right_ear"))
+    assert raised(body(right_wrist=(195, 75), **head)) == [[False, True]]
