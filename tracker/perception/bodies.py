@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import Any
 
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray
 from tracker.errors import ShapeError
 from tracker.perception.regions import first_of_each
+from tracker.perception.rows import Rows
 
 #: Points seen with less are taken for unknown; a guess between 0.3, usual for COCO's models, and
 #: MediaPipe's 0.5.
@@ -58,7 +58,7 @@ HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Bodies:
+class Bodies(Rows):
     """People found in one picture; row i of each array is the same person.
 
     Attributes:
@@ -95,12 +95,6 @@ class Bodies:
             view.flags.writeable = False
             object.__setattr__(self, name, view)
 
-    def __len__(self) -> int:
-        return len(self.score)
-
-    def __getitem__(self, rows: Any) -> Bodies:
-        return replace(self, **{name: getattr(self, name)[rows] for name in self.__slots__})
-
     @staticmethod
     def seen_now(points_px: FloatArray, visibility: FloatArray, score: FloatArray) -> Bodies:
         """Bodies of this very image."""
@@ -110,13 +104,6 @@ class Bodies:
     def none() -> Bodies:
         """Nobody at all."""
         return Bodies.seen_now(np.zeros((0, 17, 2)), np.zeros((0, 17)), np.zeros(0))
-
-    @staticmethod
-    def concatenate(*parts: Bodies) -> Bodies:
-        """Join batches, rows in the order given."""
-        return Bodies(
-            *(np.concatenate([getattr(part, name) for part in parts]) for name in Bodies.__slots__)
-        )
 
     def grown_older(self, passed_s: float) -> Bodies:
         """The same people, as long after."""

@@ -10,7 +10,7 @@ from tracker.config import Config
 from tracker.containers import ImageArray
 from tracker.perception.bodies import Bodies
 from tracker.perception.models import ModelStore
-from tracker.perception.palm_search import Window
+from tracker.perception.pictures import Window
 from tracker.perception.pose_landmarks import PoseReader
 from tracker.perception.pose_search import PoseSearch, regions_from_alignment
 from tracker.perception.strips import upright_strips

@@ -26,8 +26,7 @@ from tracker.perception.clearing import PictureClearer
 from tracker.perception.gray import tint_gray
 from tracker.perception.landmarks import Landmarks
 from tracker.perception.movement import Movement
-from tracker.perception.palm_search import Palms, Window
-from tracker.perception.pictures import continues
+from tracker.perception.pictures import Window, continues
 from tracker.perception.regions import (
     Regions,
     first_of_each,
@@ -36,6 +35,7 @@ from tracker.perception.regions import (
     regions_from_palms,
 )
 from tracker.perception.search_plan import SearchPlan
+from tracker.perception.single_shot import Detections
 from tracker.perception.verdict.raise_rules import WRIST
 
 #: Regions that overlap more than this hold the same hand; MediaPipe's value.
@@ -57,11 +57,11 @@ _NOWHERE = np.zeros((0, 4))
 
 
 class Searcher(Protocol):
-    """What `following` needs of a `PalmSearch`."""
+    """What `following` needs of a `SingleShot`."""
 
     def find(
         self, bgr: ImageArray, confidence: float, *, window: Window | None = None, shrink: int = 1
-    ) -> Palms:
+    ) -> Detections:
         """Palms of a picture, the surest first."""
         ...
 
@@ -70,8 +70,8 @@ class Reader(Protocol):
     """What `following` needs of a `LandmarkReader`."""
 
     def read_beside(
-        self, bgr: ImageArray, regions: Regions, calls: Sequence[Callable[[], Palms]]
-    ) -> tuple[Landmarks, list[Palms]]:
+        self, bgr: ImageArray, regions: Regions, calls: Sequence[Callable[[], Detections]]
+    ) -> tuple[Landmarks, list[Detections]]:
         """Landmarks in each region, and what the calls returned."""
         ...
 
@@ -179,7 +179,7 @@ class HandFollower:
         expected_px: FloatArray,
         config: Config,
         count: int,
-    ) -> list[Callable[[], Palms]]:
+    ) -> list[Callable[[], Detections]]:
         """The palm searches of this image, to be called beside each other."""
         if count == 0:
             return []
@@ -276,9 +276,9 @@ def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:
     return np.asarray(within & (SMALLER_HAND * side_px[:, None] < side_px))
 
 
-def regions_of(found: Sequence[Palms], config: Config) -> Regions:
+def regions_of(found: Sequence[Detections], config: Config) -> Regions:
     """The regions of palms from several searches, the surest first."""
-    palms = Palms.concatenate(Palms.none(), *found)
+    palms = Detections.concatenate(Detections.none(), *found)
     if len(palms) == 0:
         return Regions.none()
     palms = palms[np.argsort(-palms.score, kind="stable")]

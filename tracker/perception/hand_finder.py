@@ -9,13 +9,14 @@ from tracker.containers import CameraImage, FloatArray, Hands, ImageArray, Perce
 from tracker.perception.following import HandFollower
 from tracker.perception.landmarks import LandmarkReader
 from tracker.perception.models import ModelStore
-from tracker.perception.palm_search import PalmSearch
 from tracker.perception.regions import Regions, regions_from_landmarks
+from tracker.perception.sessions import open_session
+from tracker.perception.single_shot import SingleShot
 from tracker.perception.verdict.raise_rules import judge_raised, rule_refusals
 
-#: What the palm model sees of a piece of the picture: a square of this side. It costs three
-#: quarters of the model's own 192 px and finds as much in tiles of 240 px.
-PIECE_INPUT_PX = 160
+#: What the palm model sees of the whole picture and of a piece of it: squares of these sides. The
+#: second costs three quarters of the first, the model's own, and finds as much in tiles of 240 px.
+WHOLE_INPUT_PX, PIECE_INPUT_PX = 192, 160
 _NOWHERE = np.zeros((0, 4))
 
 
@@ -119,12 +120,20 @@ class HandFinder:
         self._config = config
 
     def _open(self, config: Config) -> HandFollower:
-        complexity, threads = config.model_complexity, config.inference_threads
-        provider = config.execution_provider
+        complexity, provider = config.model_complexity, config.execution_provider
+        name = "palm_detection_full" if complexity else "palm_detection_lite"
+
+        def palm_search(input_px: int) -> SingleShot:
+            sizes = {"batch": 1, "height": input_px, "width": input_px}
+            session = open_session(
+                self._store, name, threads=1, fixed_sizes=sizes, provider=provider
+            )
+            return SingleShot(session, input_px)
+
         return HandFollower(
-            PalmSearch.open(self._store, complexity, threads=1, provider=provider),
-            PalmSearch.open(
-                self._store, complexity, threads=1, provider=provider, input_px=PIECE_INPUT_PX
+            palm_search(WHOLE_INPUT_PX),
+            palm_search(PIECE_INPUT_PX),
+            LandmarkReader.open(
+                self._store, complexity, threads=config.inference_threads, provider=provider
             ),
-            LandmarkReader.open(self._store, complexity, threads=threads, provider=provider),
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -15,6 +15,7 @@ from tracker.containers import FloatArray, ImageArray
 from tracker.perception.models import ModelStore
 from tracker.perception.pictures import cut_out
 from tracker.perception.regions import Regions, image_from_input
+from tracker.perception.rows import Rows
 from tracker.perception.sessions import open_session
 
 INPUT_PX = 224
@@ -22,7 +23,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Landmarks:
+class Landmarks(Rows):
     """What the landmark model says about regions; row i of each array is region i.
 
     Attributes:
@@ -34,21 +35,6 @@ class Landmarks:
     points_px: FloatArray
     score: FloatArray
     right: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.score)
-
-    def __getitem__(self, rows: Any) -> Landmarks:
-        return Landmarks(self.points_px[rows], self.score[rows], self.right[rows])
-
-    @staticmethod
-    def concatenate(*parts: Landmarks) -> Landmarks:
-        """Join batches, rows in the order given."""
-        return Landmarks(
-            np.concatenate([part.points_px for part in parts]),
-            np.concatenate([part.score for part in parts]),
-            np.concatenate([part.right for part in parts]),
-        )
 
 
 class LandmarkReader:

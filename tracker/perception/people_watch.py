@@ -17,8 +17,7 @@ from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, IntArr
 from tracker.perception.bodies import Bodies, one_row_each
 from tracker.perception.body_look import BodyLook
 from tracker.perception.movement import Movement
-from tracker.perception.palm_search import Window
-from tracker.perception.pictures import continues
+from tracker.perception.pictures import Window, continues
 from tracker.perception.search_plan import clip_boxes
 from tracker.perception.strips import upright_strips
 from tracker.perception.verdict.owners import arms_without_hand, find_owners, hand_size_px

@@ -11,6 +11,8 @@ from tracker.containers import CameraImage, FloatArray, ImageArray
 
 #: Shape (1, height, width, 3), RGB in [0, 1].
 ModelInput: TypeAlias = np.ndarray[Any, np.dtype[np.float32]]
+#: A part of the picture: left, top, width, height in pixels.
+Window: TypeAlias = tuple[int, int, int, int]
 
 
 def continues(last: CameraImage, image: CameraImage) -> bool:

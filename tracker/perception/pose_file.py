@@ -15,7 +15,7 @@ from tracker.config import Config
 from tracker.containers import ImageArray
 from tracker.errors import ModelFileError
 from tracker.perception.bodies import Bodies
-from tracker.perception.palm_search import Window
+from tracker.perception.pictures import Window
 from tracker.perception.pose_layouts import PoseLayout, recognize
 from tracker.perception.sessions import open_file
 from tracker.perception.strips import upright_strips

@@ -45,6 +45,12 @@ class PoseHands:
         self._config = config
         self.reset()
 
+    def reset(self) -> None:
+        """Forget the people of earlier images."""
+        self._last: CameraImage | None = None
+        self._known = Bodies.none()
+        self._looks = 0
+
     def find(self, image: CameraImage) -> Hands:
         """Hands at the wrists seen in this very image, in pixels of the full image.
 
@@ -65,12 +71,6 @@ class PoseHands:
         self._known = bodies[np.isfinite(bodies.alignment_px).all(axis=(1, 2))]
         arms = bodies.is_visible[:, WRISTS] & np.isfinite(bodies.shoulder_px)[:, None]
         return draw_hands(bodies, arms, (image.width, image.height), self._config)
-
-    def reset(self) -> None:
-        """Forget the people of earlier images."""
-        self._last: CameraImage | None = None
-        self._known = Bodies.none()
-        self._looks = 0
 
     def configure(self, config: Config) -> None:
         """Take over changed parameters, from the next image on."""

@@ -6,12 +6,13 @@ import cv2
 import numpy as np
 import onnxruntime
 
-from tracker.containers import FloatArray, ImageArray
+from tracker.containers import ImageArray
 from tracker.perception.bodies import Bodies
 from tracker.perception.models import ModelStore
 from tracker.perception.pictures import cut_out
 from tracker.perception.regions import Regions, image_from_input
 from tracker.perception.sessions import open_session
+from tracker.perception.single_shot import probability
 
 INPUT_PX = 256
 #: BlazePose's rows of the joints, in the order of `Joint`.
@@ -61,7 +62,7 @@ class PoseReader:
         points_px = landmarks[..., :2] @ to_image[:, :, :2].transpose(0, 2, 1)
         points_px += to_image[:, None, :, 2]
         # Both: hidden behind something, or outside of the picture.
-        visible = _probability(landmarks[..., 3]) * _probability(landmarks[..., 4])
+        visible = probability(landmarks[..., 3]) * probability(landmarks[..., 4])
         return Bodies(
             points_px[:, _JOINT_ROWS],
             visible[:, _JOINT_ROWS],
@@ -69,7 +70,3 @@ class PoseReader:
             np.zeros(len(regions)),
             points_px[:, _ALIGNMENT_ROWS],
         )
-
-
-def _probability(logits: FloatArray) -> FloatArray:
-    return np.asarray(1.0 / (1.0 + np.exp(-np.clip(logits, -100.0, 100.0))))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray
+from tracker.perception.rows import Rows
 
 #: How much of the hand's own size a region takes in, and how far its center moves towards the
 #: fingers, in sizes. The landmark model was trained on regions of exactly these shapes (Zhang et
@@ -25,7 +25,7 @@ PALM_WRIST, PALM_MIDDLE_ROOT = 0, 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Regions:
+class Regions(Rows):
     """Rotated squares in the full image; row i of each array is one region.
 
     Attributes:
@@ -38,25 +38,10 @@ class Regions:
     side_px: FloatArray
     rotation_rad: FloatArray
 
-    def __len__(self) -> int:
-        return len(self.side_px)
-
-    def __getitem__(self, rows: Any) -> Regions:
-        return Regions(self.center_px[rows], self.side_px[rows], self.rotation_rad[rows])
-
     @staticmethod
     def none() -> Regions:
         """No region at all."""
         return Regions(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
-
-    @staticmethod
-    def concatenate(*parts: Regions) -> Regions:
-        """Join batches, rows in the order given."""
-        return Regions(
-            np.concatenate([part.center_px for part in parts]),
-            np.concatenate([part.side_px for part in parts]),
-            np.concatenate([part.rotation_rad for part in parts]),
-        )
 
 
 def regions_from_palms(boxes_px: FloatArray, keypoints_px: FloatArray) -> Regions:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.perception.palm_search import Window
+from tracker.perception.pictures import Window
 
 #: From one strip to the next, at most, in heights of the picture.
 _STEP = 0.21

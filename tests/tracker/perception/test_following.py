@@ -10,8 +10,8 @@ from tracker.perception.following import (
     regions_of,
 )
 from tracker.perception.landmarks import Landmarks
-from tracker.perception.palm_search import Palms
 from tracker.perception.regions import Regions
+from tracker.perception.single_shot import Detections
 
 SIDE_PX = 100.0
 NOWHERE = np.zeros((0, 4))
@@ -38,14 +38,14 @@ class World:
     def find(self, bgr, confidence, *, window=None, shrink=1):
         self.searches.append((confidence, window, shrink))
         if self.hidden_from_search or not self.centers:
-            return Palms.none()
+            return Detections.none()
         size = SIDE_PX / 2.6
         middle = np.array(self.centers) + np.array([0, size / 2])
         keypoints = np.repeat(middle[:, None], 7, axis=1)
         keypoints[:, 0] += (0, 10)
         keypoints[:, 2] -= (0, 10)
         boxes = np.concatenate([middle - size / 2, middle + size / 2], axis=-1)
-        return Palms(boxes, keypoints, np.full(len(boxes), 0.8))
+        return Detections(boxes, keypoints, np.full(len(boxes), 0.8))
 
     def read_beside(self, bgr, regions, calls):
         return self.read(regions), [call() for call in calls]
@@ -214,7 +214,7 @@ def test_hands_that_do_not_point_up_are_neither_read_nor_followed():
     def lying(palms):
         keypoints = palms.keypoints_px.copy()
         keypoints[:, 2] = keypoints[:, 0] + (20, -4)  # 79 degrees
-        return Palms(palms.boxes_px, keypoints, palms.score)
+        return Detections(palms.boxes_px, keypoints, palms.score)
 
     world = World((100, 100))
     find = world.find
@@ -243,7 +243,7 @@ def test_two_regions_that_lead_to_one_hand_give_one_row():
 
 def test_palms_that_make_no_region_are_passed_over():
     world = World((100, 100))
-    world.find = lambda *_, **__: Palms(
+    world.find = lambda *_, **__: Detections(
         np.array([[5.0, 5, 5, 5], [np.nan] * 4]), np.zeros((2, 7, 2)), np.ones(2)
     )
     assert len(follower_of(world).step(image(), Config())) == 0
@@ -277,7 +277,7 @@ def test_an_unsure_palm_counts_where_it_is_small():
         keypoints = np.full((1, 7, 2), 100.0)
         keypoints[0, 0, 1] += size / 2
         box = np.array([[100 - size / 2, 100 - size / 2, 100 + size / 2, 100 + size / 2]])
-        return Palms(box, keypoints, np.array([0.4]))
+        return Detections(box, keypoints, np.array([0.4]))
 
     # Regions of 52 and 78 px; hands of 32 px have 64.
     assert len(regions_of([unsure(20.0)], Config())) == 1

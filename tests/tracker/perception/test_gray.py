@@ -7,7 +7,7 @@ from tracker.containers import CameraImage
 from tracker.perception.following import HandFollower
 from tracker.perception.gray import is_gray, tint_gray
 from tracker.perception.landmarks import Landmarks
-from tracker.perception.palm_search import Palms
+from tracker.perception.single_shot import Detections
 
 SHADES = np.tile(np.arange(0, 240, dtype=np.uint8)[:, None, None], (1, 160, 3))
 
@@ -52,7 +52,7 @@ class Watched:
 
     def find(self, bgr, confidence, *, window=None, shrink=1):
         self.searched.append(bgr)
-        return Palms.none()
+        return Detections.none()
 
     def read_beside(self, bgr, regions, calls):
         self.read.append(bgr)

@@ -1,12 +1,11 @@
 import numpy as np
 
-from tracker.perception.anchors import make_anchors
 from tracker.perception.pose_search import (
     INPUT_PX,
     POSE_LAYERS,
-    decode_people,
     regions_from_alignment,
 )
+from tracker.perception.single_shot import decode_rows, make_anchors
 
 
 def rows_of(*people):
@@ -25,21 +24,21 @@ def test_there_is_an_anchor_for_each_row_of_the_model():
 
 
 def test_rows_below_the_confidence_are_nobody():
-    found = decode_people(*rows_of(((50, 50), 20, 2.0), ((150, 50), 20, -2.0)), 0.5)
-    np.testing.assert_allclose(found, [[[50, 50], [50, 30]]])
+    found = decode_rows(*rows_of(((50, 50), 20, 2.0), ((150, 50), 20, -2.0)), 0.5)
+    np.testing.assert_allclose(found.keypoints_px[:, :2], [[[50, 50], [50, 30]]])
 
 
 def test_overlapping_rows_are_one_person_and_the_surest_comes_first():
-    found = decode_people(
+    found = decode_rows(
         *rows_of(((50, 50), 20, 1.0), ((150, 60), 20, 3.0), ((51, 50), 20, 1.0)), 0.5
     )
-    np.testing.assert_allclose(found[:, 0], [[150, 60], [50.5, 50]])
+    np.testing.assert_allclose(found.keypoints_px[:, 0], [[150, 60], [50.5, 50]])
 
 
 def test_rows_that_are_not_finite_are_nobody():
     boxes, logits, anchors = rows_of(((50, 50), 20, 2.0))
     boxes[0, 5] = np.nan
-    assert len(decode_people(boxes, logits, anchors, 0.5)) == 0
+    assert len(decode_rows(boxes, logits, anchors, 0.5)) == 0
 
 
 def test_a_region_is_a_quarter_larger_than_the_circle_around_the_person():
