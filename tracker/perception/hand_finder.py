@@ -17,7 +17,7 @@ from tracker.perception.verdict.raise_rules import judge_raised, rule_refusals
 #: What the palm model sees of the whole picture and of a piece of it: squares of these sides. The
 #: second costs three quarters of the first, the model's own, and finds as much in tiles of 240 px.
 WHOLE_INPUT_PX, PIECE_INPUT_PX = 192, 160
-_NOWHERE = np.zeros((0, 4))
+_NOWHERE, _NOBODY = np.zeros((0, 4)), np.zeros(0, dtype=bool)
 
 
 class HandFinder:
@@ -42,6 +42,7 @@ class HandFinder:
         self._expected_px = _NOWHERE
         self._suggested = Regions.none()
         self._spared = 0
+        self._raised = _NOBODY
         self._budget: int | None = None
 
     def expect(self, boxes_px: FloatArray) -> None:
@@ -88,11 +89,13 @@ class HandFinder:
         expected_px, self._expected_px = self._expected_px, _NOWHERE
         suggested, self._suggested = self._suggested, Regions.none()
         spared, self._spared = self._spared, 0
-        found, _ = self._follower.step(
+        found, rows = self._follower.step(
             image, self._config, expected_px, self._budget, suggested, spared
         )
         size = (image.width, image.height)
-        raised, measure = judge_raised(found.points_px, size, self._config)
+        was_raised = np.append(self._raised, False)[rows]  # row -1 is new
+        raised, measure = judge_raised(found.points_px, size, self._config, was_raised)
+        self._raised = raised
         return Hands(
             found.points_px,
             found.score,
@@ -105,6 +108,7 @@ class HandFinder:
     def reset(self) -> None:
         """Forget the hands of earlier images."""
         self._follower.reset()
+        self._raised = _NOBODY
         self._suggested = Regions.none()
 
     def configure(self, config: Config) -> None:

@@ -8,13 +8,19 @@ from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, IntArray, Refusal
 
 WRIST, THUMB_TIP, MIDDLE_ROOT, MIDDLE_TIP, PINKY_TIP = 0, 4, 9, 12, 20
+#: A palm that was up stays up above so many palm lengths and until it leans so far: single bounds
+#: would flicker.
+PALM_LOWERED, LOWERED_LEAN_DEG = 0.9, 50.0
 
 #: What `Hands.raise_measure` is measured in, by `raise_rule`.
 MEASURE_UNITS = {"evidence": "sure", "palm": "palms", "image": "image heights"}
 
 
 def judge_raised(
-    landmarks_px: FloatArray, image_size: tuple[int, int], config: Config
+    landmarks_px: FloatArray,
+    image_size: tuple[int, int],
+    config: Config,
+    was_raised: BoolArray | None = None,
 ) -> tuple[BoolArray, FloatArray]:
     """Apply the configured rule to every hand of an image.
 
@@ -22,6 +28,8 @@ def judge_raised(
         landmarks_px: Shape (H, 21, 2): x to the right, y down.
         image_size: Width and height in the same pixels.
         config: `raise_rule` and the thresholds that it needs.
+        was_raised: Shape (H,): hands that were up in the image before, for the palm rule; None
+            means that nobody knows.
 
     Returns:
         Verdict of shape (H,), and the measure of shape (H,) that was compared with the threshold.
@@ -30,9 +38,11 @@ def judge_raised(
         return image_rule(
             landmarks_px, image_size, config.hand_raised_threshold, config.hand_span_threshold
         )
-    return palm_rule(
-        landmarks_px, config.palm_raised_threshold, np.radians(config.raised_lean_max_deg)
-    )
+    stays = np.zeros(len(landmarks_px), dtype=bool) if was_raised is None else was_raised
+    rise, lean_deg = config.palm_raised_threshold, config.raised_lean_max_deg
+    rise_min = np.where(stays, min(rise, PALM_LOWERED), rise)
+    lean_max_rad = np.radians(np.where(stays, max(lean_deg, LOWERED_LEAN_DEG), lean_deg))
+    return palm_rule(landmarks_px, rise_min, lean_max_rad)
 
 
 def rule_refusals(rises: BoolArray, measure: FloatArray, config: Config) -> IntArray:
@@ -81,20 +91,19 @@ def image_rule(
 
 
 def palm_rule(
-    landmarks_px: FloatArray, raised_threshold: float, lean_max_rad: float
+    landmarks_px: FloatArray, rise_min: float | FloatArray, lean_max_rad: float | FloatArray
 ) -> tuple[BoolArray, FloatArray]:
     """The same question at every distance: the rise in lengths of the palm.
 
-    Raised where (wrist.y - middle_tip.y) / |wrist - middle finger's root| > `raised_threshold` and
-    the hand leans no farther than `lean_max_rad` to a side: an arm that swings down passes through
-    a long hand that still rises, but lies on its side.
-    Open hands that point up measure 1.6-2.4, fists about 0.8. The spread of the fingers is not
-    asked for: it is 1.8 for an open palm but 0.06-0.5 for three or four fingers.
+    Raised where (wrist.y - middle_tip.y) / |wrist - middle finger's root| > `rise_min` and the
+    hand leans no farther than `lean_max_rad` to a side: an arm that swings down passes through a
+    long hand that still rises, but lies on its side. Open hands that point up measure 1.6-2.4,
+    fists about 0.8; how far three or four fingers are spread tells nothing.
 
     Args:
         landmarks_px: Shape (H, 21, 2).
-        raised_threshold: In palm lengths.
-        lean_max_rad: Of the line from the wrist to the middle finger's tip, from upright.
+        rise_min: In palm lengths, for all or for each, shape (H,).
+        lean_max_rad: Likewise, of the line from wrist to middle finger's tip, from upright.
 
     Returns:
         Verdict and rise in palm lengths, each of shape (H,); a palm without length measures 0.
@@ -103,7 +112,7 @@ def palm_rule(
     rise = _rise_px(landmarks_px)
     up = np.divide(rise, palm, out=np.zeros(len(palm)), where=palm > 0.0)
     aside = np.abs(landmarks_px[:, MIDDLE_TIP, 0] - landmarks_px[:, WRIST, 0])
-    return (up > raised_threshold) & (np.arctan2(aside, rise) <= lean_max_rad), up
+    return (up > rise_min) & (np.arctan2(aside, rise) <= lean_max_rad), up
 
 
 def _rise_px(landmarks_px: FloatArray) -> FloatArray:

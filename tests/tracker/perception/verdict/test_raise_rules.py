@@ -113,3 +113,15 @@ def test_palm_rule_does_not_call_a_hand_raised_that_lies_on_its_side(lean_deg, i
     raised, measure = palm_rule(landmarks, 1.1, np.radians(50))
     assert measure == pytest.approx([2.0 * np.cos(lean)])
     assert raised.tolist() == [is_raised]
+
+
+@pytest.mark.parametrize(("tip_y", "stays"), [(305.0, True), (315.0, False)], ids=["0.95", "0.85"])
+def test_a_palm_that_was_up_stays_up_a_little_lower(tip_y, stays):
+    both = np.concatenate([hand(tip_y=tip_y)] * 2)
+    raised, _ = judge_raised(both, VGA, Config(raise_rule="palm"), np.array([True, False]))
+    assert raised.tolist() == [stays, False]
+
+
+def test_a_lower_threshold_of_ones_own_holds_for_palms_that_were_up_too():
+    config = Config(raise_rule="palm", palm_raised_threshold=0.5)
+    assert judge_raised(hand(tip_y=340.0), VGA, config, np.array([True]))[0].tolist() == [True]
