@@ -31,8 +31,8 @@ from tracker.evaluation.detection.scenes import caller_scene, draw_conditions, i
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.perception import open_detector
 from tracker.perception.call_finder import CallFinder
-from tracker.perception.verdict.evidence import NAMES
 from tracker.perception.verdict.fitting import fit_weights
+from tracker.perception.verdict.weights import NAMES
 from tracker.simulation.camera_view import CameraView, raised_hand_pixels
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint

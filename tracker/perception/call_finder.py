@@ -17,12 +17,12 @@ from tracker.containers import (
     Refusal,
 )
 from tracker.perception.bodies import Bodies
-from tracker.perception.detector import GuidedDetector
 from tracker.perception.gray import tint_gray
+from tracker.perception.hand_finder import HandFinder
 from tracker.perception.people_watch import LOOK_PLACES, PeopleWatch
 from tracker.perception.pictures import continues
 from tracker.perception.pose_hands import draw_hands
-from tracker.perception.verdict.evidence import NAMES, Seen, gather_evidence
+from tracker.perception.verdict.evidence import Seen, gather_evidence
 from tracker.perception.verdict.memory import HandMemory
 from tracker.perception.verdict.owners import (
     arms_without_hand,
@@ -31,7 +31,7 @@ from tracker.perception.verdict.owners import (
     sure_owners,
 )
 from tracker.perception.verdict.place_prior import PlacePrior
-from tracker.perception.verdict.weights import log_odds, reasons
+from tracker.perception.verdict.weights import NAMES, log_odds, reasons
 
 #: An arm that was seen so long ago still counts where no hand was found.
 _ARM_MAX_AGE_S = 0.2
@@ -45,7 +45,7 @@ class Weighed:
 
     Attributes:
         bodies: Who was known.
-        evidence: Shape (H, F), in the order of `evidence.NAMES`.
+        evidence: Shape (H, F), in the order of `weights.NAMES`.
         log_odds: Shape (H,): of this image alone.
         belief: Shape (H,): after it.
         bar: Shape (H,): what was asked for.
@@ -67,7 +67,7 @@ class CallFinder:
         config: The perception and pose groups.
     """
 
-    def __init__(self, hands: GuidedDetector, watch: PeopleWatch | None, config: Config) -> None:
+    def __init__(self, hands: HandFinder, watch: PeopleWatch | None, config: Config) -> None:
         self._hands = hands
         self._watch = watch
         self._config = config

@@ -60,20 +60,3 @@ class PiecewiseDetector(HandDetector, Protocol):
         The search shrinks for it, down to one place in an image; followed hands are kept.
         """
         ...
-
-
-@runtime_checkable
-class GuidedDetector(PiecewiseDetector, Protocol):
-    """One that other models help: they say where a hand is, and it makes room for them."""
-
-    def suggest(self, landmarks_px: FloatArray) -> None:
-        """Hands that may be in the next image: looked at there, without a search.
-
-        Args:
-            landmarks_px: Shape (G, 21, 2): about where they would be, in pixels of the full image.
-        """
-        ...
-
-    def spare(self, places: int) -> None:
-        """Search so many places less in the next image, in which other models are at work."""
-        ...

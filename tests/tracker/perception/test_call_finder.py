@@ -8,7 +8,6 @@ from tracker.containers import CameraImage, Hands, PerceptionWork, Refusal
 from tracker.perception import HandDetector
 from tracker.perception.bodies import Bodies
 from tracker.perception.call_finder import CallFinder
-from tracker.perception.detector import GuidedDetector
 from tracker.perception.people_watch import PeopleWatch
 
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
@@ -179,7 +178,6 @@ def test_it_passes_on_what_it_is_told(upright_hand):
     assert (hands.runs, hands.calls) == (3, ["reset", Config(max_hands=2)])
     assert finder.work.places == 2
     assert isinstance(finder, HandDetector)
-    assert isinstance(finder, GuidedDetector) is False
 
 
 def test_how_a_verdict_came_about_can_be_looked_at(body, open_hand):

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracker.perception.verdict.weights import (
-    FADE_S,
-    FIRST_LOG_ODDS,
-    IMAGE_SHARE,
-    LOG_ODDS_MAX,
-    NOT_UP_MAX,
-    STILL_UP_MIN,
-    UP_SHOULDERS,
-)
+#: What is believed of a hand that was never seen, and how fast a belief fades to it, s.
+FIRST_LOG_ODDS, FADE_S = -1.75, 2.0
+#: Images of one hand are alike; each adds this share of its evidence.
+IMAGE_SHARE = 0.5
+#: No belief is stronger than this, so that a hand that goes down is soon noticed.
+LOG_ODDS_MAX = 6.0
+#: Wrists lower above the shoulder than the first, in widths of the shoulders, are not up; those
+#: higher than the second are.
+UP_SHOULDERS = (0.1, 0.3)
+#: Of a hand that calls and is still up no image tells more than this against it, and of one that
+#: is not up none tells more than that for it.
+STILL_UP_MIN, NOT_UP_MAX = -0.5, 0.75
 
 
 def update_belief(

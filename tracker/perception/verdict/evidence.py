@@ -14,6 +14,7 @@ from tracker.containers import BoolArray, FloatArray, Hands, IntArray
 from tracker.perception.bodies import ELBOWS, HEAD, SHOULDERS, WRISTS, Bodies, Joint
 from tracker.perception.verdict.owners import head_distance_px
 from tracker.perception.verdict.raise_rules import MIDDLE_ROOT, MIDDLE_TIP, THUMB_TIP, WRIST
+from tracker.perception.verdict.weights import NAMES
 
 #: Middle joints and tips of the four fingers; the pinky's root.
 _JOINTS, _TIPS, _PINKY_ROOT = [6, 10, 14, 18], [8, 12, 16, 20], 17
@@ -28,13 +29,6 @@ _NO_PERSON = 0.3
 _ON_HEAD, _ABOVE = 0.5, 0.3
 #: Nearer to the head than this counts, in shoulder widths; likewise to the other hand.
 _HEAD_REACH, _OTHER_REACH = 0.9, 1.4
-
-#: The names of the quantities, in the order of the columns.
-NAMES = (
-    "found", "score", "rise", "lean", "spread", "thumb",
-    "owned", "unowned", "alone", "low", "palm_low", "high", "fist_low", "overhead", "forearm",
-    "head", "palm_on_head", "inside", "together", "doubt", "faint", "apart", "swing",
-)  # fmt: skip
 
 
 class Seen(NamedTuple):

@@ -1,8 +1,12 @@
 import numpy as np
 import pytest
 
-from tracker.perception.verdict.belief import update_belief
-from tracker.perception.verdict.weights import FIRST_LOG_ODDS, IMAGE_SHARE, LOG_ODDS_MAX
+from tracker.perception.verdict.belief import (
+    FIRST_LOG_ODDS,
+    IMAGE_SHARE,
+    LOG_ODDS_MAX,
+    update_belief,
+)
 
 
 def after(evidence, images, before=float("nan"), passed_s=0.1):

@@ -5,7 +5,8 @@ import pytest
 
 from tracker.containers import Hands
 from tracker.perception.bodies import Bodies
-from tracker.perception.verdict.evidence import NAMES, Seen, gather_evidence
+from tracker.perception.verdict.evidence import Seen, gather_evidence
+from tracker.perception.verdict.weights import NAMES
 
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
 

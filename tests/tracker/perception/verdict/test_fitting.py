@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from tracker.perception.verdict.evidence import NAMES
-from tracker.perception.verdict.fitting import PRIORS, fit_weights
+from tracker.perception.verdict.fitting import fit_weights
+from tracker.perception.verdict.weights import NAMES, WEIGHTS
 
 
 def rows(count, rng, **of_calls):
@@ -14,23 +14,19 @@ def rows(count, rng, **of_calls):
     return evidence, calls
 
 
-def test_every_quantity_has_a_prior():
-    assert set(PRIORS) == set(NAMES)
-
-
 def test_without_data_the_priors_stand():
     bias, weights = fit_weights(
         np.zeros((2, len(NAMES))), np.array([True, False]), np.full(2, 1e-9)
     )
     assert bias == pytest.approx(0.0, abs=0.1)
-    assert weights == pytest.approx({name: PRIORS[name].mean for name in NAMES}, abs=1e-3)
+    assert weights == pytest.approx({name: WEIGHTS[name].prior for name in NAMES}, abs=1e-3)
 
 
 def test_what_tells_calls_gains_weight():
     evidence, calls = rows(400, np.random.default_rng(1), high=(0.6, 0.1))
     _, weights = fit_weights(evidence, calls, np.ones(400))
-    assert weights["high"] > PRIORS["high"].mean
-    assert weights["head"] == pytest.approx(PRIORS["head"].mean)
+    assert weights["high"] > WEIGHTS["high"].prior
+    assert weights["head"] == pytest.approx(WEIGHTS["head"].prior)
 
 
 def test_no_weight_contradicts_its_meaning():
