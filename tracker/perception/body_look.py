@@ -10,11 +10,14 @@ from tracker.config import Config
 from tracker.containers import ImageArray
 from tracker.perception.bodies import Bodies
 from tracker.perception.models import ModelStore
-from tracker.perception.pictures import Window
+from tracker.perception.pictures import Window, upright_strips
 from tracker.perception.pose_landmarks import PoseReader
-from tracker.perception.pose_search import PoseSearch, regions_from_alignment
-from tracker.perception.strips import upright_strips
+from tracker.perception.regions import regions_from_alignment
+from tracker.perception.sessions import open_session
+from tracker.perception.single_shot import POSE_LAYERS, SingleShot
 
+#: Side of the square that the detector sees.
+_SEARCH_PX = 224
 #: People of a window whose joints are read, the surest first.
 _READS = 2
 #: Two regions whose centers are closer than this, in sides, hold the same person: a third of a
@@ -66,7 +69,7 @@ class MediapipeLook:
     Source: Bazarevsky et al., "BlazePose: On-device Real-time Body Pose Tracking", 2020.
     """
 
-    def __init__(self, searcher: PoseSearch, reader: PoseReader, config: Config) -> None:
+    def __init__(self, searcher: SingleShot, reader: PoseReader, config: Config) -> None:
         self._searcher = searcher
         self._reader = reader
         self.configure(config)
@@ -78,12 +81,18 @@ class MediapipeLook:
         Raises:
             ModelFileError, ConfigError: As `open_session`.
         """
-        threads, provider = config.inference_threads, config.execution_provider
-        return MediapipeLook(
-            PoseSearch.open(store, threads=threads, provider=provider),
-            PoseReader.open(store, threads=threads, provider=provider),
-            config,
+        detector, landmarks = (
+            open_session(
+                store,
+                name,
+                threads=config.inference_threads,
+                fixed_sizes={"batch": 1},
+                provider=config.execution_provider,
+            )
+            for name in ("pose_detection", "pose_landmark_full")
         )
+        search = SingleShot(detector, _SEARCH_PX, POSE_LAYERS, black=-1.0)
+        return MediapipeLook(search, PoseReader(landmarks), config)
 
     def windows(self, width: int, height: int) -> list[Window]:
         """Upright strips: the detector sees the most prominent people of a picture alone."""
@@ -93,7 +102,8 @@ class MediapipeLook:
         self, bgr: ImageArray, window: Window, known: Bodies = _NOBODY, most: int = _READS
     ) -> Bodies:
         """People of a window who are not known, the surest of them."""
-        found = self._searcher.find(bgr, window, self._score_min)
+        people = self._searcher.find(bgr, self._score_min, window=window)
+        found = regions_from_alignment(people.keypoints_px[:, :2])
         there_px = regions_from_alignment(known.alignment_px).center_px
         apart = np.linalg.norm(found.center_px[:, None] - there_px[None], axis=-1)
         is_new = ~(apart < _SAME_PERSON_SIDES * found.side_px[:, None]).any(axis=1)

@@ -35,13 +35,9 @@ class PictureClearer:
         self._mean: np.ndarray | None = None
 
     def clear(self, bgr: ImageArray) -> ImageArray:
-        """The picture as the models should see it.
+        """The picture as the models should see it, shape (height, width, 3), of the same shape.
 
-        Args:
-            bgr: Shape (height, width, 3).
-
-        Returns:
-            A picture of the same shape; the very same where there is nothing to improve.
+        The very same where there is nothing to improve.
         """
         green = bgr[:, :, 1]
         noise_std = measure_noise(green)
@@ -64,10 +60,7 @@ class PictureClearer:
 
 
 def measure_noise(gray: ImageArray) -> float:
-    """Standard deviation of a picture's noise from pixel to pixel, in gray levels.
-
-    Args:
-        gray: Shape (height, width).
+    """Standard deviation of the noise of a picture (height, width), in gray levels.
 
     Source: Immerkaer, "Fast Noise Variance Estimation", Computer Vision and Image Understanding
         64(2), 1996; with the median for the mean, which edges would pull up.

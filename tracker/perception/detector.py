@@ -55,8 +55,5 @@ class PiecewiseDetector(HandDetector, Protocol):
         ...
 
     def set_budget(self, runs: int | None) -> None:
-        """How many model runs an image may take from now on; None is as configured.
-
-        The search shrinks for it, down to one place in an image; followed hands are kept.
-        """
+        """How many model runs an image may take from now on; None is as configured."""
         ...

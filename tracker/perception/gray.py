@@ -24,11 +24,7 @@ _TINTED = np.clip(np.outer(np.arange(256), TINT).round(), 0, 255).astype(np.uint
 
 
 def tint_gray(bgr: ImageArray) -> ImageArray:
-    """The picture as the palm search should see it: a gray one tinted, any other the very same.
-
-    Args:
-        bgr: Shape (height, width, 3).
-    """
+    """The picture, (height, width, 3), as the palm search should see it; color stays as it is."""
     if not is_gray(bgr):
         return bgr
     return np.asarray(cv2.applyColorMap(bgr[:, :, 1], _TINTED), dtype=np.uint8)

@@ -46,20 +46,11 @@ class HandFinder:
         self._budget: int | None = None
 
     def expect(self, boxes_px: FloatArray) -> None:
-        """Look here first in the next image: where people are known to be.
-
-        Args:
-            boxes_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows, in pixels of the full
-                image, in which a raised hand would be.
-        """
+        """Look into these boxes, shape (E, 4), first in the next image."""
         self._expected_px = boxes_px
 
     def suggest(self, landmarks_px: FloatArray) -> None:
-        """Look whether these hands are in the next image, without a search.
-
-        Args:
-            landmarks_px: Shape (G, 21, 2): about where they would be, in pixels of the full image.
-        """
+        """Look without a search whether hands are there in the next image; shape (G, 21, 2)."""
         self._suggested = regions_from_landmarks(landmarks_px)
 
     def spare(self, places: int) -> None:
@@ -77,7 +68,7 @@ class HandFinder:
 
     @property
     def seen(self) -> ImageArray | None:
-        """The last image as the models saw it, shape (height, width, 3); None before the first."""
+        """The last image as the models saw it; None before the first."""
         return self._follower.seen
 
     def find(self, image: CameraImage) -> Hands:

@@ -62,11 +62,7 @@ class LandmarkReader:
     def open(
         store: ModelStore, complexity: int, *, threads: int, provider: str = "cpu"
     ) -> LandmarkReader:
-        """The lite (0) or full (1) landmark model of a store.
-
-        Raises:
-            ModelFileError, ConfigError: As `open_session`.
-        """
+        """The lite (0) or full (1) landmark model of a store; raises as `open_session`."""
         name = "hand_landmark_full" if complexity else "hand_landmark_lite"
         sizes = {"batch": 1}
         abreast = open_session(store, name, threads=1, fixed_sizes=sizes, provider=provider)
@@ -77,23 +73,14 @@ class LandmarkReader:
             )
         return LandmarkReader(alone, abreast, threads)
 
-    def read(self, bgr: ImageArray, regions: Regions) -> Landmarks:
-        """Look at each region of a picture.
+    def read_beside(
+        self, bgr: ImageArray, regions: Regions, calls: Sequence[Callable[[], T]]
+    ) -> tuple[Landmarks, list[T]]:
+        """Look at each region of a picture, while other models of one thread each are called.
 
         Args:
             bgr: Shape (height, width, 3), the full image.
             regions: In its pixels; what lies outside of the picture repeats its edge.
-        """
-        return self.read_beside(bgr, regions, ())[0]
-
-    def read_beside(
-        self, bgr: ImageArray, regions: Regions, calls: Sequence[Callable[[], T]]
-    ) -> tuple[Landmarks, list[T]]:
-        """The same, while other models of one thread each are called.
-
-        Args:
-            bgr: Shape (height, width, 3), the full image.
-            regions: In its pixels.
             calls: Run first, since more may follow from them.
 
         Returns:

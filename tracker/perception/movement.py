@@ -24,14 +24,11 @@ class Movement:
         self._last: ImageArray | None = None
 
     def boxes(self, bgr: ImageArray) -> FloatArray:
-        """Where something moved.
-
-        Args:
-            bgr: Shape (height, width, 3).
+        """Where something moved since the last picture, which has shape (height, width, 3) too.
 
         Returns:
-            Shape (M, 4): x_min, y_min, x_max, y_max in pixels; none for a first picture, or one
-            of another size.
+            Shape (M, 4): x_min, y_min, x_max, y_max in pixels; none for a first picture, or one of
+            another size.
         """
         height, width = bgr.shape[:2]
         size = (max(1, width // SHRINK), max(1, height // SHRINK))

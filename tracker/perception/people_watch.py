@@ -17,9 +17,8 @@ from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, IntArr
 from tracker.perception.bodies import Bodies, one_row_each
 from tracker.perception.body_look import BodyLook
 from tracker.perception.movement import Movement
-from tracker.perception.pictures import Window, continues
+from tracker.perception.pictures import Window, continues, upright_strips
 from tracker.perception.search_plan import clip_boxes
-from tracker.perception.strips import upright_strips
 from tracker.perception.verdict.owners import arms_without_hand, find_owners, hand_size_px
 
 #: Sides of the windows, in hand lengths, tried one after the other until one shows the owner; of
@@ -51,11 +50,7 @@ class _Question:
 
 
 class PeopleWatch:
-    """Goes from image to image and looks at what is most overdue.
-
-    Args:
-        look: The pose model.
-    """
+    """Goes from image to image and looks at what is most overdue."""
 
     def __init__(self, look: BodyLook) -> None:
         self._look = look
@@ -199,13 +194,7 @@ class PeopleWatch:
 
 
 def window_around(hand: Hands, side_hands: float, image: CameraImage) -> Window:
-    """The part of a picture in which the owner of a hand would be.
-
-    Args:
-        hand: One.
-        side_hands: Of the window before it is cut to the picture, in lengths of the hand.
-        image: The picture.
-    """
+    """The part of a picture in which the owner of one hand would be, so many hand lengths wide."""
     side_px = side_hands * hand_size_px(hand)[0]
     low = hand.wrist_px[0] - side_px * np.array([0.5, _WRIST_AT])
     (box,) = clip_boxes(np.concatenate([low, low + side_px])[None], (image.width, image.height))

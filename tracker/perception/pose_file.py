@@ -15,10 +15,9 @@ from tracker.config import Config
 from tracker.containers import ImageArray
 from tracker.errors import ModelFileError
 from tracker.perception.bodies import Bodies
-from tracker.perception.pictures import Window
+from tracker.perception.pictures import Window, upright_strips
 from tracker.perception.pose_layouts import PoseLayout, recognize
 from tracker.perception.sessions import open_file
-from tracker.perception.strips import upright_strips
 
 #: The window around somebody known is so many times as large as what was seen of them.
 _MARGIN = 1.4

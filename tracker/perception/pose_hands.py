@@ -81,7 +81,7 @@ class PoseHands:
 def draw_hands(
     bodies: Bodies, arms: BoolArray, image_size: tuple[int, int], config: Config
 ) -> Hands:
-    """Schematic open hands at the wrists of some arms.
+    """Schematic open hands at the wrists of some arms, with the arm's verdict.
 
     Only the wrist is known. The rest of the landmarks continues the forearm, in the size that the
     shoulders suggest, so that ranging and drawing find what they know from other hands.
@@ -91,9 +91,6 @@ def draw_hands(
         arms: Shape (P, 2), left arm first: which arms; their wrists are visible.
         image_size: Width and height of the picture in pixels.
         config: The pose group, and `raise_rule` for what `raise_measure` means.
-
-    Returns:
-        One row for each arm, person by person, with the arm's verdict.
     """
     person, side = np.nonzero(arms)
     wrist = bodies.points_px[person, np.array(WRISTS)[side]]
@@ -132,12 +129,7 @@ def _fingers_direction(bodies: Bodies) -> FloatArray:
 def judge_arms(bodies: Bodies, config: Config) -> BoolArray:
     """Arms whose wrist is well above the shoulder, and not at the head, as with a telephone.
 
-    Args:
-        bodies: Who is there.
-        config: `pose_raised_threshold` and `pose_head_clearance`.
-
-    Returns:
-        Shape (P, 2), left arm first; an arm that is not seen is down.
+    Shape (P, 2), left arm first; an arm that is not seen is down.
     """
     seen, points = bodies.is_visible, bodies.points_px
     width = bodies.shoulder_px[:, None]

@@ -8,10 +8,8 @@ import onnxruntime
 
 from tracker.containers import ImageArray
 from tracker.perception.bodies import Bodies
-from tracker.perception.models import ModelStore
 from tracker.perception.pictures import cut_out
 from tracker.perception.regions import Regions, image_from_input
-from tracker.perception.sessions import open_session
 from tracker.perception.single_shot import probability
 
 INPUT_PX = 256
@@ -22,35 +20,15 @@ _ALIGNMENT_ROWS = [33, 34]
 
 
 class PoseReader:
-    """The pose landmark model on one person after the other.
-
-    Args:
-        session: The opened model.
-    """
+    """The pose landmark model on one person after the other."""
 
     def __init__(self, session: onnxruntime.InferenceSession) -> None:
         self._session = session
 
-    @staticmethod
-    def open(store: ModelStore, *, threads: int, provider: str) -> PoseReader:
-        """The pose landmark model of a store.
-
-        Raises:
-            ModelFileError, ConfigError: As `open_session`.
-        """
-        sizes = {"batch": 1}
-        return PoseReader(
-            open_session(
-                store, "pose_landmark_full", threads=threads, fixed_sizes=sizes, provider=provider
-            )
-        )
-
     def read(self, bgr: ImageArray, regions: Regions) -> Bodies:
-        """The people in each region of a picture, and where to look for them next.
+        """The people in each region of a picture of shape (height, width, 3).
 
-        Args:
-            bgr: Shape (height, width, 3), the full image.
-            regions: In its pixels; what lies outside of the picture repeats its edge.
+        What lies outside of the picture repeats its edge.
         """
         to_image = image_from_input(regions, INPUT_PX)
         landmarks = np.zeros((len(regions), 39, 5))

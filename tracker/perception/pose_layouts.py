@@ -75,12 +75,7 @@ class PoseLayout:
 
 
 def recognize(origin: str, inputs: Shapes, outputs: Shapes) -> PoseLayout:
-    """Tell the family of a model by its inputs and outputs.
-
-    Args:
-        origin: The file's name, for the message.
-        inputs: Names and shapes.
-        outputs: Names and shapes.
+    """Tell the family of a model by its inputs and outputs; `origin` is its name, for the message.
 
     Raises:
         ModelFileError: It is none of those understood; the message lists what was found.

@@ -15,6 +15,9 @@ from tracker.perception.rows import Rows
 #: al., "MediaPipe Hands", 2020), so they are no parameters.
 PALM_SCALE, PALM_SHIFT = 2.6, 0.5
 LANDMARK_SCALE, LANDMARK_SHIFT = 2.0, 0.1
+#: How much larger than the circle around a person the region of the pose landmarks is; the model
+#: was trained so (Bazarevsky et al., "BlazePose", 2020).
+REGION_SCALE = 1.25
 
 WRIST, INDEX_ROOT, MIDDLE_ROOT, RING_ROOT = 0, 5, 9, 13
 #: The landmarks that span a hand's region: without fingertips, so that it stays the same size when
@@ -45,12 +48,7 @@ class Regions(Rows):
 
 
 def regions_from_palms(boxes_px: FloatArray, keypoints_px: FloatArray) -> Regions:
-    """The regions in which the hands of detected palms lie.
-
-    Args:
-        boxes_px: Shape (P, 4): x_min, y_min, x_max, y_max of the palms.
-        keypoints_px: Shape (P, 7, 2): the palm model's key points.
-    """
+    """Where the hands of palms lie: boxes of shape (P, 4), the model's key points (P, 7, 2)."""
     rotation = upright_rotation(keypoints_px[:, PALM_WRIST], keypoints_px[:, PALM_MIDDLE_ROOT])
     size = boxes_px[:, 2:] - boxes_px[:, :2]
     center = (boxes_px[:, :2] + boxes_px[:, 2:]) / 2
@@ -58,11 +56,7 @@ def regions_from_palms(boxes_px: FloatArray, keypoints_px: FloatArray) -> Region
 
 
 def regions_from_landmarks(landmarks_px: FloatArray) -> Regions:
-    """The regions in which hands will be looked for in the next image.
-
-    Args:
-        landmarks_px: Shape (H, 21, 2).
-    """
+    """Where hands will be looked for in the next image; from landmarks of shape (H, 21, 2)."""
     roots = landmarks_px[:, [INDEX_ROOT, RING_ROOT]].mean(axis=1)
     towards = (roots + landmarks_px[:, MIDDLE_ROOT]) / 2
     rotation = upright_rotation(landmarks_px[:, WRIST], towards)
@@ -74,30 +68,31 @@ def regions_from_landmarks(landmarks_px: FloatArray) -> Regions:
     return _hand_square(center, high - low, rotation, LANDMARK_SCALE, LANDMARK_SHIFT)
 
 
+def regions_from_alignment(alignment_px: FloatArray) -> Regions:
+    """The regions of people whose hips and circle are known.
+
+    Args:
+        alignment_px: Shape (P, 2, 2): the middle of the hips, and a point above the head on the
+            circle around the whole person, in the full image.
+    """
+    hips, circle = alignment_px[:, 0], alignment_px[:, 1]
+    radius = np.linalg.norm(circle - hips, axis=-1)
+    return Regions(hips, 2.0 * REGION_SCALE * radius, upright_rotation(hips, circle))
+
+
 def upright_rotation(wrist_px: FloatArray, fingers_px: FloatArray) -> FloatArray:
-    """How far a hand is turned clockwise from pointing up.
+    """How far hands are turned clockwise from pointing up, shape (H,), radians in [-pi, pi].
 
     Args:
         wrist_px: Shape (H, 2).
         fingers_px: Shape (H, 2): where the fingers begin.
-
-    Returns:
-        Shape (H,), radians in [-pi, pi].
     """
     along = fingers_px - wrist_px
     return np.asarray(np.arctan2(along[:, 0], -along[:, 1]), dtype=np.float64)
 
 
 def image_from_input(regions: Regions, input_px: int) -> FloatArray:
-    """Affine maps from pixels of a model's square input to those of the image.
-
-    Args:
-        regions: What the model looks at.
-        input_px: Side of its input.
-
-    Returns:
-        Shape (R, 2, 3).
-    """
+    """Affine maps from pixels of a model's square input to the image's, shape (R, 2, 3)."""
     scale = regions.side_px / input_px
     cos, sin = scale * np.cos(regions.rotation_rad), scale * np.sin(regions.rotation_rad)
     linear = np.stack([np.stack([cos, -sin], -1), np.stack([sin, cos], -1)], axis=1)
@@ -106,11 +101,7 @@ def image_from_input(regions: Regions, input_px: int) -> FloatArray:
 
 
 def overlap(first: Regions, second: Regions) -> FloatArray:
-    """Intersection over union of every pair, as if the squares were not turned.
-
-    Returns:
-        Shape (F, S), in [0, 1].
-    """
+    """Intersection over union of every pair, (F, S), as if the squares were not turned."""
     return box_overlap(_upright_boxes(first), _upright_boxes(second))
 
 

@@ -50,11 +50,7 @@ _GOLDEN = 0.618  # steps that spread evenly, whoever's turn it is
 
 
 class SearchPlan:
-    """The places of pictures of one size; remembers where was looked, says where to look.
-
-    Args:
-        image_size: Width and height in pixels.
-    """
+    """The places of pictures of one size, (width, height); remembers where was looked."""
 
     def __init__(self, image_size: tuple[int, int]) -> None:
         self._size = image_size
@@ -137,8 +133,7 @@ class SearchPlan:
 def rotation_windows(width: int, height: int) -> FloatArray:
     """The whole picture, the tiles that cover it row by row, and smaller ones around the horizon.
 
-    Returns:
-        Shape (R, 4): x_min, y_min, x_max, y_max; R is 1 + 15 + 18 for 640 x 480.
+    Shape (R, 4): x_min, y_min, x_max, y_max; R is 1 + 15 + 18 for 640 x 480.
     """
     whole = [0.0, 0.0, float(width), float(height)]
     side, far_side = (share * min(width, height) for share in (TILE_SIDE, FAR_TILE_SIDE))
@@ -184,12 +179,7 @@ def _tiles(lefts: FloatArray, tops: FloatArray, side_px: float) -> FloatArray:
 
 
 def clip_boxes(boxes_px: FloatArray, image_size: tuple[int, int]) -> FloatArray:
-    """The part of each box that lies in the picture; boxes of which none does are left out.
-
-    Args:
-        boxes_px: Shape (B, 4): x_min, y_min, x_max, y_max.
-        image_size: Width and height in pixels.
-    """
+    """The part of each box, (B, 4), that lies in the picture; those of which none does go."""
     clipped = np.clip(boxes_px, 0.0, np.tile(np.asarray(image_size, dtype=float), 2))
     return clipped[np.all(clipped[:, 2:] - clipped[:, :2] >= 1.0, axis=1)]
 

@@ -16,6 +16,8 @@ from tracker.perception.rows import Rows
 #: (stride in pixels, anchors per cell) of each output map of the palm model, in the order of its
 #: rows. The last three maps share stride 16 with two anchors each: six a cell.
 PALM_LAYERS = ((8, 2), (16, 6))
+#: Of the pose detector; the last three maps share stride 32.
+POSE_LAYERS = ((8, 2), (16, 2), (32, 6))
 #: What overlaps more than this is the same; MediaPipe's value.
 SAME_OVERLAP = 0.3
 
@@ -112,12 +114,7 @@ class SingleShot:
 def make_anchors(input_px: int, layers: tuple[tuple[int, int], ...] = PALM_LAYERS) -> FloatArray:
     """Centers of all anchors, layer by layer, row by row, the anchors of a cell in succession.
 
-    Args:
-        input_px: Side of the square input; a multiple of every stride.
-        layers: (stride in pixels, anchors per cell) of each output map.
-
-    Returns:
-        Shape (A, 2): x and y in pixels of the input; A is 2016 for 192 px, 1400 for 160 px.
+    Shape (A, 2): x and y in pixels of the input; A is 2016 for 192 px, 1400 for 160 px.
 
     Source: Liu et al., "SSD: Single Shot MultiBox Detector", ECCV 2016; anchors of fixed size
         as in Bazarevsky et al., "BlazeFace", 2019.

@@ -41,15 +41,7 @@ class Turn:
         return replace(image, bgr=self._turn_pixels(image.bgr))
 
     def boxes(self, boxes_px: FloatArray, image_size: tuple[int, int]) -> FloatArray:
-        """Upright boxes around turned ones.
-
-        Args:
-            boxes_px: Shape (B, 4): x_min, y_min, x_max, y_max in the picture before its turn.
-            image_size: Width and height of that picture.
-
-        Returns:
-            Shape (B, 4), in the turned picture.
-        """
+        """Upright boxes in the turned picture around boxes, (B, 4), of one of (width, height)."""
         if self.clockwise_deg == 0.0:
             return boxes_px
         matrix = self._matrix(image_size)
@@ -58,12 +50,7 @@ class Turn:
         return np.concatenate([center - half, center + half], axis=-1)
 
     def hands_back(self, hands: Hands, image_size: tuple[int, int]) -> Hands:
-        """What was found in the turned picture, in pixels of the picture before its turn.
-
-        Args:
-            hands: In the turned picture.
-            image_size: Width and height of the picture before its turn.
-        """
+        """What was found in the turned picture, in pixels of the picture before its turn."""
         if self.clockwise_deg == 0.0:
             return hands
         matrix = self._matrix(image_size)

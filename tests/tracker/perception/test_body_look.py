@@ -11,7 +11,7 @@ from tracker.containers import CameraImage
 from tracker.perception.bodies import Bodies
 from tracker.perception.body_look import MediapipeLook
 from tracker.perception.pose_hands import PoseHands
-from tracker.perception.regions import Regions
+from tracker.perception.single_shot import Detections
 from tracker.simulation import scene_from_mapping
 from tracker.simulation.camera_view import CameraView, look_of
 from tracker.simulation.figure import bend_arm
@@ -37,15 +37,12 @@ class Crowd:
         self.windows = []
         self.looks = []
 
-    def find(self, bgr, window, confidence):
+    def find(self, bgr, confidence, *, window):
         self.windows.append(window)
         left, _, width, _ = window
         seen = [place for place in self.bodies if left <= place < left + width]
-        return Regions(
-            np.array([(place, 156.0) for place in seen]).reshape(-1, 2),
-            np.full(len(seen), 250.0),
-            np.zeros(len(seen)),
-        )
+        keypoints = np.array([[(x, 156.0), (x, 56.0)] for x in seen]).reshape(-1, 2, 2)
+        return Detections(np.zeros((len(seen), 4)), keypoints, np.ones(len(seen)))
 
     def read(self, bgr, regions):
         looked = [round(float(center)) for center in regions.center_px[:, 0]]

@@ -29,7 +29,8 @@ def region(center, side, rotation_rad=0.0):
 
 def reader(point=None, threads=1):
     model = FakeLandmarkModel(point)
-    return LandmarkReader(model, model, threads)
+    whole = LandmarkReader(model, model, threads)
+    return lambda picture, regions: whole.read_beside(picture, regions, ())[0]
 
 
 @pytest.mark.parametrize(
@@ -38,14 +39,12 @@ def reader(point=None, threads=1):
     ids=["upright", "right", "down", "left"],
 )
 def test_the_upper_left_corner_of_the_input_turns_with_the_region(rotation, corner):
-    found = reader((0, 0)).read(
-        np.zeros((400, 400, 3), np.uint8), region((100, 200), 100, rotation)
-    )
+    found = reader((0, 0))(np.zeros((400, 400, 3), np.uint8), region((100, 200), 100, rotation))
     np.testing.assert_allclose(found.points_px[0], [corner] * 21, atol=1e-4)
 
 
 def test_the_middle_of_the_input_is_the_middle_of_the_region():
-    found = reader((112, 112)).read(np.zeros((9, 9, 3), np.uint8), region((3, 4), 77, 0.3))
+    found = reader((112, 112))(np.zeros((9, 9, 3), np.uint8), region((3, 4), 77, 0.3))
     np.testing.assert_allclose(found.points_px[0, 7], [3, 4], atol=1e-5)
 
 
@@ -54,19 +53,19 @@ def test_a_bright_spot_is_found_where_it_is(rotation):
     picture = np.zeros((480, 640, 3), np.uint8)
     picture[298:303, 418:423] = 60
     picture[300, 420] = 255
-    found = reader().read(picture, region((400, 310), 150, rotation))
+    found = reader()(picture, region((400, 310), 150, rotation))
     np.testing.assert_allclose(found.points_px[0, 0], [420, 300], atol=0.75)
 
 
 def test_what_lies_outside_repeats_the_edge_of_the_picture():
-    found = reader((0, 0)).read(np.full((20, 20, 3), 255, np.uint8), region((0, 0), 200))
+    found = reader((0, 0))(np.full((20, 20, 3), 255, np.uint8), region((0, 0), 200))
     assert found.score[0] == pytest.approx(1.0)  # the fake's score is the mean brightness
 
 
 def test_several_hands_side_by_side_keep_their_order():
     regions = Regions(np.array([[10.0, 20], [30, 40], [50, 60]]), np.full(3, 10.0), np.zeros(3))
-    one_by_one = reader((112, 112)).read(np.zeros((90, 90, 3), np.uint8), regions)
-    abreast = reader((112, 112), threads=2).read(np.zeros((90, 90, 3), np.uint8), regions)
+    one_by_one = reader((112, 112))(np.zeros((90, 90, 3), np.uint8), regions)
+    abreast = reader((112, 112), threads=2)(np.zeros((90, 90, 3), np.uint8), regions)
     np.testing.assert_allclose(abreast.points_px[:, 0], regions.center_px, atol=1e-5)
     np.testing.assert_array_equal(abreast.points_px, one_by_one.points_px)
     np.testing.assert_array_equal(abreast.right, [0.25] * 3)
@@ -74,6 +73,6 @@ def test_several_hands_side_by_side_keep_their_order():
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_no_regions_give_no_hands(threads):
-    found = reader((0, 0), threads).read(np.zeros((9, 9, 3), np.uint8), Regions.none())
+    found = reader((0, 0), threads)(np.zeros((9, 9, 3), np.uint8), Regions.none())
     assert found.points_px.shape == (0, 21, 2)
     assert len(found) == 0

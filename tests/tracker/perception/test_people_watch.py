@@ -10,7 +10,7 @@ from tracker.perception.people_watch import (
     PeopleWatch,
     window_around,
 )
-from tracker.perception.strips import upright_strips
+from tracker.perception.pictures import upright_strips
 
 STRIPS = upright_strips(640, 480)
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}

@@ -7,6 +7,7 @@ from tracker.perception.regions import (
     Regions,
     box_overlap,
     overlap,
+    regions_from_alignment,
     regions_from_landmarks,
     regions_from_palms,
     upright_rotation,
@@ -103,3 +104,10 @@ def test_regions_can_be_chosen_and_joined():
     np.testing.assert_array_equal(chosen.side_px, [0, 2])
     joined = Regions.concatenate(chosen, Regions.none(), regions[1:2])
     np.testing.assert_array_equal(joined.center_px, [[0, 1], [4, 5], [2, 3]])
+
+
+def test_a_region_is_a_quarter_larger_than_the_circle_around_the_person():
+    regions = regions_from_alignment(np.array([[[100.0, 100.0], [140.0, 100.0]]]))
+    np.testing.assert_allclose(regions.center_px, [[100, 100]])
+    np.testing.assert_allclose(regions.side_px, [100.0])
+    np.testing.assert_allclose(regions.rotation_rad, [np.pi / 2])  # lies to the right

@@ -48,15 +48,9 @@ class Seen(NamedTuple):
 
 
 def gather_evidence(hands: Hands, bodies: Bodies, seen: Seen) -> FloatArray:
-    """Every quantity of every hand.
+    """Every quantity of every hand, found or at the end of a forearm.
 
-    Args:
-        hands: Found ones, and those that continue a forearm.
-        bodies: Who is there.
-        seen: What else is known.
-
-    Returns:
-        Shape (H, F), in the order of `NAMES`.
+    Shape (H, F), in the order of `weights.NAMES`.
     """
     owned, found = (flags.astype(np.float64) for flags in (seen.owner >= 0, seen.is_found))
     shape = {name: found * column for name, column in _shapes_of(hands).items()}

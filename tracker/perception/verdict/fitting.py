@@ -23,9 +23,6 @@ def fit_weights(
         evidence: Shape (N, F), in the order of `NAMES`.
         calls: Shape (N,).
         share: Shape (N,): how much each row counts; images of one hand are alike.
-
-    Returns:
-        The bias, and the weight of each quantity.
     """
     mean = np.array([row.prior for row in WEIGHTS.values()])
     stiffness = np.array([row.stiffness for row in WEIGHTS.values()])

@@ -50,12 +50,7 @@ class RememberedHand:
     way: list[tuple[int, float]] = field(default_factory=list)
 
     def doubt(self, stamp_ns: int, faint: float) -> float:
-        """The doubt about the owner's arms: who was a person a moment ago still is.
-
-        Args:
-            stamp_ns: Of the image.
-            faint: The doubt in this image alone.
-        """
+        """The doubt about the owner's arms: who was a person a moment ago still is."""
         passed_s = (stamp_ns - self.weighed_ns) / 1e9 if self.weighed_ns else np.inf
         self.faint = min(faint, self.faint + passed_s / _DOUBT_S)
         return self.faint
@@ -84,15 +79,7 @@ class HandMemory:
         self._hands: list[RememberedHand] = []
 
     def recognize(self, stamp_ns: int, hands: Hands) -> list[RememberedHand]:
-        """What is remembered of each hand; of a new one, nothing but where it is.
-
-        Args:
-            stamp_ns: Of the image.
-            hands: Of it.
-
-        Returns:
-            An entry for each hand, in their order; the caller may write its `log_odds`.
-        """
+        """What is remembered of each hand of an image; of a new one, nothing but where it is."""
         kept = [
             item for item in self._hands if 0 <= stamp_ns - item.seen_ns <= _FORGET_AFTER_S * 1e9
         ]

@@ -29,10 +29,9 @@ def hand_size_px(hands: Hands) -> FloatArray:
 
 
 def head_distance_px(bodies: Bodies, points_px: FloatArray) -> FloatArray:
-    """How far one point for each body is from its nose, eyes or ears, whichever is nearest.
+    """From one point for each body to its nose, eyes or ears, whichever is nearest, shape (P,).
 
-    Returns:
-        Shape (P,); infinite where nothing of the head is seen.
+    Infinite where nothing of the head is seen.
     """
     apart = np.linalg.norm(bodies.points_px[:, HEAD] - points_px[:, None], axis=-1)
     return np.asarray(np.where(bodies.is_visible[:, HEAD], apart, np.inf).min(axis=1))
@@ -71,11 +70,7 @@ def find_owners(
 
 
 def sure_owners(hands: Hands, bodies: Bodies) -> IntArray:
-    """Whose hand is it beyond doubt, so that the person is where that body is?
-
-    Returns:
-        Shape (H,): rows of `bodies`; -1 where it is not sure.
-    """
+    """Whose hand is it beyond doubt? Rows of `bodies`, shape (H,); -1 where it is not sure."""
     owner = find_owners(hands, bodies, _SURE_WRIST_SHOULDERS)
     if len(bodies) == 0:
         return owner

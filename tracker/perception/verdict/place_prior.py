@@ -49,16 +49,7 @@ class PlacePrior:
         self._places: list[_Place] = []
 
     def bars(self, stamp_ns: int, wrist_px: FloatArray, size_px: FloatArray) -> FloatArray:
-        """What hands must bring in addition, in log-odds.
-
-        Args:
-            stamp_ns: Of the image.
-            wrist_px: Shape (H, 2).
-            size_px: Shape (H,).
-
-        Returns:
-            Shape (H,).
-        """
+        """What hands with wrists (H, 2) and sizes (H,) must bring in addition, log-odds, (H,)."""
         return np.array(
             [
                 max((self._faded(item, stamp_ns) for item in self._near(wrist, size)), default=0.0)
@@ -67,13 +58,7 @@ class PlacePrior:
         )
 
     def learn(self, stamp_ns: int, wrist_px: FloatArray, size_px: FloatArray) -> None:
-        """Take in the hands of an image that would call if no bar were raised.
-
-        Args:
-            stamp_ns: Of the image.
-            wrist_px: Shape (H, 2).
-            size_px: Shape (H,).
-        """
+        """Take in the hands, likewise, of an image that would call if no bar were raised."""
         for wrist, size in zip(wrist_px, size_px, strict=True):
             near = self._near(wrist, size)
             if not near:

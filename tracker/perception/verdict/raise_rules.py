@@ -46,15 +46,12 @@ def judge_raised(
 
 
 def rule_refusals(rises: BoolArray, measure: FloatArray, config: Config) -> IntArray:
-    """Why the configured rule does not call hands raised.
+    """Why the configured rule does not call hands raised, shape (H,): of `Refusal`.
 
     Args:
         rises: Shape (H,): as from `judge_raised`, like `measure`.
         measure: Shape (H,).
         config: `raise_rule` and its threshold.
-
-    Returns:
-        Shape (H,): of `Refusal`; 0 where `rises`.
     """
     threshold, otherwise = config.palm_raised_threshold, Refusal.LEANS
     if config.raise_rule == "image":
@@ -74,12 +71,6 @@ def image_rule(
     Raised where (wrist.y - middle_tip.y) / height > `raised_threshold` and
     |thumb_tip.x - pinky_tip.x| / width > `span_threshold`. With the defaults and a focal length of
     460 px that reaches to about 0.7 m.
-
-    Args:
-        landmarks_px: Shape (H, 21, 2).
-        image_size: Width and height in pixels.
-        raised_threshold: In image heights.
-        span_threshold: In image widths.
 
     Returns:
         Verdict and vertical distance in image heights, each of shape (H,).

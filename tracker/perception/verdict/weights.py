@@ -68,18 +68,10 @@ _REASONS = np.array([row.reason for row in WEIGHTS.values()])
 
 
 def log_odds(evidence: FloatArray) -> FloatArray:
-    """The log-odds of one image that each hand calls, shape (H,).
-
-    Args:
-        evidence: Shape (H, F), in the order of `NAMES`.
-    """
+    """The log-odds of one image that each hand calls, (H,); from evidence of shape (H, F)."""
     return np.asarray(BIAS + evidence @ _LOG_ODDS)
 
 
 def reasons(evidence: FloatArray) -> IntArray:
-    """What spoke most against each hand, shape (H,): of `Refusal`.
-
-    Args:
-        evidence: Shape (H, F), in the order of `NAMES`.
-    """
+    """What spoke most against each hand, (H,): of `Refusal`; from evidence of shape (H, F)."""
     return np.asarray(_REASONS[np.argmin(evidence * _LOG_ODDS, axis=1)], dtype=np.int64)
