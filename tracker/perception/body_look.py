@@ -76,11 +76,7 @@ class MediapipeLook:
 
     @staticmethod
     def open(store: ModelStore, config: Config) -> MediapipeLook:
-        """The pose models of a store.
-
-        Raises:
-            ModelFileError, ConfigError: As `open_session`.
-        """
+        """The pose models of a store; raises as `open_session`."""
         detector, landmarks = (
             open_session(
                 store,

@@ -187,11 +187,7 @@ class CallFinder:
             self._watch.reset()
 
     def configure(self, config: Config) -> None:
-        """Take over changed parameters, from the next image on.
-
-        Raises:
-            ModelFileError: As the hand detector's; nothing has changed then.
-        """
+        """Take over changed parameters, from the next image on; raises as the hand detector's."""
         self._hands.configure(config)
         self._config = config
         if self._watch is not None:

@@ -47,11 +47,7 @@ class PiecewiseDetector(HandDetector, Protocol):
         ...
 
     def expect(self, boxes_px: FloatArray) -> None:
-        """Where raised hands are likelier than elsewhere in the next image.
-
-        Args:
-            boxes_px: Shape (E, 4): x_min, y_min, x_max, y_max in pixels of the full image.
-        """
+        """Where raised hands are likelier in the next image: boxes of shape (E, 4), in pixels."""
         ...
 
     def set_budget(self, runs: int | None) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Protocol
 
 import numpy as np
 
@@ -24,7 +23,7 @@ from tracker.containers import (
 )
 from tracker.perception.clearing import PictureClearer
 from tracker.perception.gray import tint_gray
-from tracker.perception.landmarks import Landmarks
+from tracker.perception.landmarks import LandmarkReader, Landmarks
 from tracker.perception.movement import Movement
 from tracker.perception.pictures import Window, continues
 from tracker.perception.regions import (
@@ -35,7 +34,7 @@ from tracker.perception.regions import (
     regions_from_palms,
 )
 from tracker.perception.search_plan import SearchPlan
-from tracker.perception.single_shot import Detections
+from tracker.perception.single_shot import Detections, SingleShot
 from tracker.perception.verdict.raise_rules import WRIST
 
 #: Regions that overlap more than this hold the same hand; MediaPipe's value.
@@ -56,26 +55,6 @@ PROMISING_SCORE, MOST_AGAIN = 0.1, 2
 _NOWHERE = np.zeros((0, 4))
 
 
-class Searcher(Protocol):
-    """What `following` needs of a `SingleShot`."""
-
-    def find(
-        self, bgr: ImageArray, confidence: float, *, window: Window | None = None, shrink: int = 1
-    ) -> Detections:
-        """Palms of a picture, the surest first."""
-        ...
-
-
-class Reader(Protocol):
-    """What `following` needs of a `LandmarkReader`."""
-
-    def read_beside(
-        self, bgr: ImageArray, regions: Regions, calls: Sequence[Callable[[], Detections]]
-    ) -> tuple[Landmarks, list[Detections]]:
-        """Landmarks in each region, and what the calls returned."""
-        ...
-
-
 class HandFollower:
     """Goes from image to image with the hands it knows.
 
@@ -85,7 +64,7 @@ class HandFollower:
         reader: Reads landmarks.
     """
 
-    def __init__(self, whole: Searcher, pieces: Searcher, reader: Reader) -> None:
+    def __init__(self, whole: SingleShot, pieces: SingleShot, reader: LandmarkReader) -> None:
         self._whole = whole
         self._pieces = pieces
         self._reader = reader
@@ -114,8 +93,7 @@ class HandFollower:
         Args:
             image: The next image.
             config: The perception group.
-            expected_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows in which a raised
-                hand is likelier than elsewhere.
+            expected_px: Shape (E, 4): windows in which a raised hand is likelier than elsewhere.
             budget: Model runs, of the palm search and on followed hands, that the image may take;
                 the search shrinks for it, down to one place.
             suggested: Regions in which hands may be; each is read in place of a search.

@@ -23,10 +23,6 @@ _GRAPH_PARAMETERS = (
 class MediapipeHands:
     """`detector: mediapipe`: the legacy solution `hands` in video mode, on the shrunk picture.
 
-    Args:
-        config: `model_complexity`, `max_hands`, the confidences, `downscale_factor` and the raise
-            rule.
-
     Raises:
         ConfigError: mediapipe is not installed, or is too new to have the legacy solutions.
     """

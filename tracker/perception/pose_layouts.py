@@ -96,21 +96,15 @@ def recognize(origin: str, inputs: Shapes, outputs: Shapes) -> PoseLayout:
 
 def _layout_of(outputs: Shapes) -> PoseLayout | None:
     shapes = sorted(outputs.values(), key=len)
-    one = len(shapes) == 1
-    if set(outputs) == {"simcc_x", "simcc_y"} and all(
-        _fits(shape, (1, JOINTS, None)) for shape in shapes
+    for layout, wanted in (
+        (RTMPOSE, [(1, JOINTS, None)] * 2),
+        (MOVENET, [(1, 6, 5 + 3 * JOINTS)]),
+        (YOLO, [(1, 5 + 3 * JOINTS, None)]),
+        (RTMO, [(1, None, 5), (1, None, JOINTS, 3)]),
     ):
-        return RTMPOSE
-    if one and _fits(shapes[0], (1, 6, 5 + 3 * JOINTS)):
-        return MOVENET
-    if one and _fits(shapes[0], (1, 5 + 3 * JOINTS, None)):
-        return YOLO
-    if (
-        len(shapes) == 2
-        and _fits(shapes[0], (1, None, 5))
-        and _fits(shapes[1], (1, None, JOINTS, 3))
-    ):
-        return RTMO
+        is_named = layout is not RTMPOSE or set(outputs) == {"simcc_x", "simcc_y"}
+        if is_named and len(shapes) == len(wanted) and all(map(_fits, shapes, wanted)):
+            return layout
     return None
 
 

@@ -66,15 +66,14 @@ class SearchPlan:
 
         Args:
             count: How many.
-            expected_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows where raised hands
-                are expected; each is a place of its own.
+            expected_px: Shape (E, 4): x_min, y_min, x_max, y_max of windows where raised hands are
+                expected; each is a place of its own.
             moved_px: Shape (M, 4): boxes in which something moved; they draw attention to the
                 places that hold their centers, and for a while the window around each is a place
                 of its own: a hand that is up has come there.
 
         Returns:
-            Shape (K, 4): windows, the neediest first; K is `count`, or all places if these are
-            fewer.
+            Shape (K, 4): windows, the neediest first; K is `count` or, if fewer, all places.
         """
         self._turn += 1
         while self._lately and self._lately[0][0] <= self._turn - NEW_AGE:

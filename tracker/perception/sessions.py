@@ -32,11 +32,11 @@ def open_session(
     fixed_sizes: dict[str, int] | None = None,
     provider: str = "cpu",
 ) -> onnxruntime.InferenceSession:
-    """Open a model of the catalog for inference.
+    """Open a model of the catalog, such as "palm_detection_full", for inference.
 
     Args:
         store: Where the model files live.
-        name: A name in the catalog, such as "palm_detection_full".
+        name: In the catalog.
         threads: Processor threads that one call may use. A session of one thread may be called
             from several Python threads at once; ONNX Runtime leaves the interpreter free.
         fixed_sizes: Free dimensions of the input (`batch`, `height`, `width`) that will never
@@ -102,9 +102,6 @@ def open_file(
 
 def choose_providers(provider: str) -> list[str]:
     """ONNX Runtime's names for a provider; the processor stands behind, for operators it lacks.
-
-    Args:
-        provider: `Config.execution_provider`.
 
     Raises:
         ConfigError: This ONNX Runtime was built without it; the message says what it has.

@@ -1,9 +1,8 @@
 """How must a picture be turned so that people stand upright in it? For cameras that are rolled.
 
-The palm search, the raise rules and the pose models look for "up" in the picture. A camera that
-lies on its side, hangs upside down or leans shows it elsewhere: its pictures are turned before the
-detector sees them, and what was found is turned back, so that pixels always belong to the camera's
-own intrinsics.
+The models and the raise rules look for "up" in the picture. Pictures of a camera that lies on its
+side, hangs upside down or leans are turned before, and what was found is turned back, so that
+pixels always belong to the camera's own intrinsics.
 """
 
 from __future__ import annotations

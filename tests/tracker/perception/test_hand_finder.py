@@ -176,3 +176,12 @@ def test_an_empty_room_holds_no_hands(finder):
 
 def test_the_finder_is_a_hand_detector(full_finder):
     assert isinstance(full_finder, HandDetector)
+
+
+def test_a_palm_that_was_up_stays_up_by_the_milder_bound(model_store):
+    finder = HandFinder(Config(raise_rule="palm"), model_store)
+    image = photo("hagrid_gesture_palm.png")
+    assert finder.find(image).raised.tolist() == [True]
+    finder.configure(Config(raise_rule="palm", palm_raised_threshold=3.0))
+    assert finder.find(image).raised.tolist() == [True]
+    assert find_fresh(finder, image).raised.tolist() == [False]

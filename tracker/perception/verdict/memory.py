@@ -33,7 +33,6 @@ class RememberedHand:
         wrist_px: Where it was last.
         size_px: Of it; see `hand_size_px`.
         seen_ns: When.
-        since_ns: When it was first seen.
         log_odds: That it calls; NaN before the first verdict.
         weighed_ns: When that was believed.
         faint: How much its owner's arms were doubted when they were seen best of late, 0 to 1.
@@ -43,7 +42,6 @@ class RememberedHand:
     wrist_px: FloatArray
     size_px: float
     seen_ns: int
-    since_ns: int
     log_odds: float = float("nan")
     weighed_ns: int = 0
     faint: float = 1.0
@@ -88,7 +86,7 @@ class HandMemory:
         answer = []
         for row in range(len(hands)):
             if rows[row] < 0:
-                item = RememberedHand(hands.wrist_px[row], 0.0, stamp_ns, stamp_ns)
+                item = RememberedHand(hands.wrist_px[row], 0.0, stamp_ns)
                 kept.append(item)
             else:
                 item = kept[rows[row]]
