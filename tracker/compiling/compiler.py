@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,9 @@ _GARBLED = (
 )
 
 
-def compiled(function: Callable[..., Any], signature: Any, folder: Path | None) -> Any:
+def compiled(
+    function: Callable[..., Any], signature: Any, folder: Path | None, may_compile: bool = True
+) -> Any:
     """A function that calls loops, as machine code for arguments of these types.
 
     Args:
@@ -29,11 +32,15 @@ def compiled(function: Callable[..., Any], signature: Any, folder: Path | None) 
         signature: Numba's. Said beforehand, so that no array ever leads to another compilation;
             None compiles when it is called, for what it is given.
         folder: Where it is taken from, or kept; None keeps it nowhere.
+        may_compile: Otherwise it is only taken from there.
+
+    Raises:
+        FileNotFoundError: It is not there, or cannot be read, and must not be compiled.
     """
     _register_loops()
     dispatcher = njit(error_model="numpy")(function)
     if folder is not None:
-        dispatcher._cache = _cache_in(folder)(function)
+        dispatcher._cache = _cache_in(folder, may_compile)(function)
     if signature is not None:
         dispatcher.compile(signature)
         dispatcher.disable_compile()
@@ -53,7 +60,7 @@ def _register(function: Callable[..., Any], **options: bool) -> None:
     register_jitable(error_model="numpy", **ways_in, **options)(function)
 
 
-def _cache_in(folder: Path) -> type[FunctionCache]:
+def _cache_in(folder: Path, may_compile: bool) -> type[FunctionCache]:
     """Numba's cache, in a folder that says of which sources it is."""
 
     class Locator(_CacheLocator):
@@ -79,18 +86,18 @@ def _cache_in(folder: Path) -> type[FunctionCache]:
         _impl_class = Files
 
         def load_overload(self, sig: Any, target_context: Any) -> Any:
-            try:
-                return super().load_overload(sig, target_context)
-            except OSError:
-                return None
-            except _GARBLED:  # compile it again
-                self.flush()
-                return None
+            kept = None
+            with suppress(OSError):
+                try:
+                    kept = super().load_overload(sig, target_context)
+                except _GARBLED:  # compile it again
+                    self.flush()
+            if kept is None and not may_compile:
+                raise FileNotFoundError(f"{folder} has no machine code that can be read")
+            return kept
 
         def save_overload(self, sig: Any, data: Any) -> None:
-            try:
+            with suppress(OSError, *_GARBLED):
                 super().save_overload(sig, data)
-            except OSError:
-                return
 
     return Cache

@@ -36,14 +36,14 @@ class Machine:
     """Where the machine code of a function is, in this process.
 
     Args:
-        build: Gives the compiled function, taken from a folder or kept there; it can be imported
-            by its name.
+        build: Gives the compiled function, of a folder and `may_compile`, as `compiler.compiled`
+            has them; it can be imported by its name.
 
     Attributes:
         code: The compiled function; None as long as it is not here.
     """
 
-    def __init__(self, build: Callable[[Path | None], Callable[..., Any]]) -> None:
+    def __init__(self, build: Callable[..., Callable[..., Any]]) -> None:
         self.code: Callable[..., Any] | None = None
         self._build = build
         self._thread: Thread | None = None
@@ -63,8 +63,10 @@ class Machine:
         try:
             folder = files.folder()
             if folder is not None and files.are_in(folder):
-                self.code = self._build(folder)
+                self.code = self._build(folder, may_compile=False)
                 return
+        except FileNotFoundError:
+            pass  # cut off, or for another processor
         except ImportError as error:
             warn(f"numba is installed and cannot be loaded ({error}); Python tracks, slowly.")
             return

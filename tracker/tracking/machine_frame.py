@@ -66,12 +66,12 @@ def frame_types() -> FrameTypes:
     return FrameTypes(people, claims, instant, likeness, from_dtype(RECORD), trace, frame)
 
 
-def compiled_frame(folder: Path | None) -> Callable[..., Frame]:
-    """`track_frame` as machine code, taken from a folder or kept there; None keeps it nowhere."""
+def compiled_frame(folder: Path | None, may_compile: bool = True) -> Callable[..., Frame]:
+    """`track_frame` as machine code; `compiler.compiled` says what the arguments are."""
     from tracker.compiling.compiler import compiled
 
     *given, result = frame_types()
-    frame: Callable[..., Frame] = compiled(track_frame, result(*given), folder)
+    frame: Callable[..., Frame] = compiled(track_frame, result(*given), folder, may_compile)
     return frame
 
 

@@ -15,12 +15,12 @@ def doubled(number):
 def double(number):
     return doubled(number)
 
-def build(folder):
+def build(folder, may_compile=True):
     from numba import float64
     from tracker.compiling.compiler import compiled
-    return compiled(double, float64(float64), folder)
+    return compiled(double, float64(float64), folder, may_compile)
 
-def fail(folder):
+def fail(folder, may_compile=True):
     raise RuntimeError("no compiler today")
 """
 

@@ -52,6 +52,22 @@ def test_code_that_is_kept_is_there_at_once(small, folder):
     assert sum(machine.code.stats.cache_hits.values()) == 1
 
 
+@pytest.mark.parametrize("suffix", [".nbi", ".nbc"])
+def test_code_that_was_cut_off_is_compiled_again_in_the_background(
+    small, folder, suffix, wait_for_the_compiler
+):
+    module = small()
+    module.build(folder)
+    for path in folder.glob(f"*{suffix}"):
+        path.write_bytes(path.read_bytes()[:20])
+    machine = Machine(module.build)
+    machine.start()
+    assert machine.code is None
+    wait_for_the_compiler()
+    assert machine.code(3.0) == 6.0
+    assert sum(machine.code.stats.cache_hits.values()) == 1
+
+
 def test_who_wants_to_wait_is_told_once_that_the_compiler_runs(small, folder):
     said, build = [], small().build
     for _ in range(2):
@@ -101,7 +117,7 @@ def test_a_compiler_that_fails_is_said_and_python_goes_on(
 
 
 def test_a_numba_that_cannot_be_loaded_is_said_and_python_goes_on(folder, caplog):
-    def build(folder):
+    def build(folder, may_compile):
         raise ImportError("Numba needs NumPy 2.2 or less")
 
     folder.mkdir()
