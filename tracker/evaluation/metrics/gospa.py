@@ -64,7 +64,9 @@ def gospa(
     Source: Rahmathullah, Garcia-Fernandez, Svensson, "Generalized optimal sub-pattern assignment
         metric", FUSION 2017.
     """
-    one = gospa_frames(tracks_xy_m[None], people_xy_m[None], cutoff_m, order)
+    apart_m = distances(tracks_xy_m[None], people_xy_m[None])
+    counts = np.array([len(tracks_xy_m)]), np.array([len(people_xy_m)])
+    one = gospa_frames(apart_m, *counts, cutoff_m, order)
     return Gospa(
         float(one.distance_m[0]),
         float(one.localisation[0]),
@@ -75,22 +77,26 @@ def gospa(
 
 
 def gospa_frames(
-    tracks_xy_m: FloatArray, people_xy_m: FloatArray, cutoff_m: float = 1.0, order: float = 2.0
+    apart_m: FloatArray,
+    tracks: IntArray,
+    people: IntArray,
+    cutoff_m: float = 1.0,
+    order: float = 2.0,
 ) -> GospaFrames:
     """`gospa` of many instants at once.
 
     Args:
-        tracks_xy_m: Shape (T, N, 2); NaN where there is nobody.
-        people_xy_m: Shape (T, P, 2), in the same frame; NaN where there is nobody.
+        apart_m: Shape (T, N, P), from `matching.distances`.
+        tracks: Shape (T,): how many tracks there are.
+        people: Shape (T,): how many people there are.
         cutoff_m: c.
         order: p.
     """
     alone = cutoff_m**order / 2.0
-    cost = np.minimum(distances(tracks_xy_m, people_xy_m), cutoff_m) ** order
+    cost = np.minimum(apart_m, cutoff_m) ** order
     pairs = match_best(2.0 * alone - cost)
     paired = np.count_nonzero(pairs, axis=(1, 2))
     localisation = np.where(pairs, cost, 0.0).sum(axis=(1, 2))
-    missed = alone * (np.isfinite(people_xy_m[..., 0]).sum(axis=1) - paired)
-    false = alone * (np.isfinite(tracks_xy_m[..., 0]).sum(axis=1) - paired)
+    missed, false = alone * (people - paired), alone * (tracks - paired)
     distance = (localisation + missed + false) ** (1.0 / order)
     return GospaFrames(distance, localisation, missed, false, pairs)

@@ -39,12 +39,12 @@ def match_best(gain: FloatArray) -> BoolArray:
     best = gain.max(axis=1, initial=0.0)[:, None]
     pairs: BoolArray = (gain == best) & (best > 0.0)
     is_disputed = (pairs.sum(axis=2) > 1).any(axis=1) | (pairs.sum(axis=1) > 1).any(axis=1)
-    for frame in np.flatnonzero(is_disputed):
-        worth = np.maximum(gain[frame], 0.0)
+    disputed = np.flatnonzero(is_disputed)
+    pairs[disputed] = False
+    for frame, worth in zip(disputed.tolist(), np.maximum(gain[disputed], 0.0), strict=True):
         row, column = linear_sum_assignment(worth, maximize=True)
-        pairs[frame] = False
-        pairs[frame, row, column] = worth[row, column] > 0.0
-    return pairs
+        pairs[frame, row, column] = True
+    return pairs & (gain > 0.0)
 
 
 def match_faithfully(track_id: IntArray, gain: FloatArray) -> BoolArray:

@@ -68,9 +68,11 @@ def score_trial(truth: TruthFrames, tracks: TrackFrames, config: Config) -> dict
     """
     is_there = truth.is_there
     has_called = np.logical_or.accumulate(truth.hand_up & truth.in_view & is_there, axis=0)
-    known_xy = np.where((is_there & has_called)[..., None], truth.xy_m, np.nan)
-    known, tracked = np.isfinite(known_xy[..., 0]).sum(axis=1), (tracks.id > 0).sum(axis=1)
-    sets = gospa_frames(tracks.xy_m, known_xy, CUTOFF_M)
+    is_known = is_there & has_called
+    known, tracked = is_known.sum(axis=1), (tracks.id > 0).sum(axis=1)
+    apart_m = distances(tracks.xy_m, truth.xy_m)
+    from_known_m = np.where(is_known[:, None], apart_m, np.inf)
+    sets = gospa_frames(from_known_m, tracked, known, CUTOFF_M)
     alone = CUTOFF_M**2 / 2.0
     return {
         "gospa_m": float(sets.distance_m.mean()),
@@ -80,17 +82,16 @@ def score_trial(truth: TruthFrames, tracks: TrackFrames, config: Config) -> dict
         "ospa_m": float(ospa_of(sets, np.maximum(known, tracked)).mean()),
         "missed_share": float(sets.missed.sum() / alone / known.sum()) if known.any() else np.nan,
         "false_tracks": float(sets.false.mean() / alone),
-        **_identity_figures(truth, tracks, known_xy),
-        **_consistency_figures(tracks, known_xy, sets.pairs),
-        **_raise_figures(truth, tracks, config),
+        **_identity_figures(truth, tracks, from_known_m),
+        **_consistency_figures(truth, tracks, sets.pairs),
+        **_raise_figures(truth, tracks, apart_m, config),
     }
 
 
 def _identity_figures(
-    truth: TruthFrames, tracks: TrackFrames, known_xy: FloatArray
+    truth: TruthFrames, tracks: TrackFrames, apart_m: FloatArray
 ) -> dict[str, float]:
-    apart = distances(tracks.xy_m, known_xy)
-    near = np.where(apart < CUTOFF_M, CUTOFF_M**2 - apart**2, 0.0)
+    near = np.where(apart_m < CUTOFF_M, CUTOFF_M**2 - apart_m**2, 0.0)
     pairs = match_faithfully(tracks.id, near)
     frame, row, column = np.nonzero(pairs)
     person, track = truth.id[column], tracks.id[frame, row]
@@ -101,22 +102,24 @@ def _identity_figures(
     return {
         "identity_switches_per_min": switches / minutes if minutes else np.nan,
         "track_purity": track_purity(person, track),
-        "rmse_m": float(np.sqrt(_mean(apart[pairs] ** 2))),
+        "rmse_m": float(np.sqrt(_mean(apart_m[pairs] ** 2))),
     }
 
 
 def _consistency_figures(
-    tracks: TrackFrames, known_xy: FloatArray, pairs: BoolArray
+    truth: TruthFrames, tracks: TrackFrames, pairs: BoolArray
 ) -> dict[str, float]:
     frame, row, column = np.nonzero(pairs)
-    error = known_xy[frame, column] - tracks.xy_m[frame, row]
+    error = truth.xy_m[frame, column] - tracks.xy_m[frame, row]
     nees = normalized_squared(error, tracks.covariance_m2[frame, row])
     return {"nees_position": _mean(nees), "covered_share": _mean(nees <= _COVERED)}
 
 
-def _raise_figures(truth: TruthFrames, tracks: TrackFrames, config: Config) -> dict[str, float]:
+def _raise_figures(
+    truth: TruthFrames, tracks: TrackFrames, apart_m: FloatArray, config: Config
+) -> dict[str, float]:
     allowed = Allowed(config.raise_streak, config.lower_streak)
-    raises = count_raises(judge_trial(truth, tracks, CUTOFF_M, allowed))
+    raises = count_raises(judge_trial(truth, tracks, apart_m, CUTOFF_M, allowed))
     return {
         "time_to_raise_s": float(np.mean(raises.delays_s)) if raises.delays_s else np.nan,
         "hands": float(raises.hands),

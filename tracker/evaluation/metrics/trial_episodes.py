@@ -7,24 +7,29 @@ import numpy as np
 from tracker.containers import FloatArray, IntArray
 from tracker.evaluation.metrics.episode_report import EpisodeReport
 from tracker.evaluation.metrics.frames import TrackFrames, TruthFrames
-from tracker.evaluation.metrics.matching import distances, match_best
+from tracker.evaluation.metrics.matching import match_best
 from tracker.evaluation.metrics.raise_reports import Allowed, Compared, Episodes, judge_raises
 
 
 def judge_trial(
-    truth: TruthFrames, tracks: TrackFrames, cutoff_m: float, allowed: Allowed
+    truth: TruthFrames,
+    tracks: TrackFrames,
+    apart_m: FloatArray,
+    cutoff_m: float,
+    allowed: Allowed,
 ) -> EpisodeReport:
     """What `EpisodeEvaluation` finds where each frame is an image and a sample of the truth.
 
     Args:
         truth: Everybody who is there.
         tracks: Whom the tracker knows.
+        apart_m: Shape (T, N, P): how far every track is from every person.
         cutoff_m: No track is paired with a person farther away.
         allowed: What counts as invented.
     """
     episodes, episode = _episodes(truth)
     frame, column = np.nonzero(truth.is_there)
-    row, error_m = _pairs(truth, tracks, cutoff_m)
+    row, error_m = _pairs(truth, apart_m, cutoff_m)
     raised = np.nonzero(tracks.raised)
     compared = Compared(
         stamps_ns=truth.stamps_ns,
@@ -60,14 +65,13 @@ def _episodes(truth: TruthFrames) -> tuple[Episodes, IntArray]:
 
 
 def _pairs(
-    truth: TruthFrames, tracks: TrackFrames, cutoff_m: float
+    truth: TruthFrames, apart_m: FloatArray, cutoff_m: float
 ) -> tuple[IntArray, FloatArray]:
     """Row of the person at whom each track stands, or -1, and how far; shape (T, N)."""
     is_there = truth.is_there
     row_of = np.cumsum(is_there).reshape(is_there.shape) - 1
-    apart = distances(tracks.xy_m, truth.xy_m)
-    frame, place, column = np.nonzero(match_best(cutoff_m - apart))
-    row, error_m = np.full(tracks.id.shape, -1), np.full(tracks.id.shape, np.inf)
+    frame, place, column = np.nonzero(match_best(cutoff_m - apart_m))
+    row, error_m = np.full(apart_m.shape[:2], -1), np.full(apart_m.shape[:2], np.inf)
     row[frame, place] = row_of[frame, column]
-    error_m[frame, place] = apart[frame, place, column]
+    error_m[frame, place] = apart_m[frame, place, column]
     return row, error_m
