@@ -175,3 +175,12 @@ def test_raised_arms_of_rendered_people_are_found(model_store, rendered):
 def test_an_empty_room_holds_nobody(model_store):
     finder = PoseHands(MediapipeLook.open(model_store, Config()), Config())
     assert len(finder.find(image(0))) == 0
+
+
+def test_a_changed_confidence_holds_from_the_next_image_on(body):
+    crowd = Crowd(body, 50)
+    crowd.bodies[50] = body(shift_px=(-150, 0), score=0.6)
+    finder = open_finder(crowd)
+    assert len(finder.find(image(0))) == 2
+    finder.configure(Config(pose_confidence=0.7))
+    assert len(finder.find(image(1))) == 0

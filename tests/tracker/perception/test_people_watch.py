@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tracker.config import Config
 from tracker.containers import CameraImage, Hands
 from tracker.perception.bodies import Bodies
 from tracker.perception.people_watch import (
@@ -155,3 +156,10 @@ def test_the_window_shows_so_many_hands_around_the_wrist(upright_hand):
     hand = upright_hand((320, 240), palm_px=20.0 / 1.9)
     assert window_around(hand, 10.0, picture(0)) == (220, 180, 200, 200)
     assert window_around(hand, 100.0, picture(0)) == (0, 0, 640, 480)
+
+
+def test_changed_parameters_reach_the_model(body):
+    look, told = Look(body(**UP)), []
+    look.configure = told.append
+    PeopleWatch(look).configure(Config(pose_confidence=0.7))
+    assert told == [Config(pose_confidence=0.7)]
