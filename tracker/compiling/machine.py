@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from threading import Event, Thread
 from typing import Any
@@ -23,12 +24,17 @@ from tracker.compiling import files
 LOG = logging.getLogger(__name__)
 #: How often one looks whether the compiler is done.
 _LOOK_S = 0.1
-#: What the compiler's process does; whatever else runs goes first.
+#: What the compiler's process does, once whoever compiles into the same folder is done; whatever
+#: else runs goes first. Ctrl-C is meant for the program, which ends its compiler.
 _COMPILE = """
-import importlib, os, pathlib, sys
+import contextlib, fcntl, importlib, os, pathlib, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_IGN)
 os.nice(10)
 module, name, place = sys.argv[1:]
-getattr(importlib.import_module(module), name)(pathlib.Path(place))
+with open(os.path.join(place, "lock"), "w") as lock:
+    with contextlib.suppress(OSError):  # some file systems have no locks
+        fcntl.flock(lock, fcntl.LOCK_EX)
+    getattr(importlib.import_module(module), name)(pathlib.Path(place))
 """
 
 
@@ -47,6 +53,7 @@ class Machine:
         self.code: Callable[..., Any] | None = None
         self._build = build
         self._thread: Thread | None = None
+        self._process = 0
         self._leaves = Event()
 
     def start(
@@ -58,7 +65,7 @@ class Machine:
             say: Gets a sentence before the compiler runs.
             warn: Gets one where its work cannot be kept, or numba not be loaded.
         """
-        if self.code is not None or self._thread is not None:
+        if self.code is not None or self._process == os.getpid():
             return
         try:
             folder = files.folder()
@@ -78,6 +85,8 @@ class Machine:
                 "it; set NUMBA_CACHE_DIR to a folder that may be written."
             )
             folder = None
+        self._process = os.getpid()  # one that is forked off has no such thread
+        self._leaves = Event()
         self._thread = Thread(target=self._compile, args=(folder,), name="compiler", daemon=True)
         self._thread.start()
         atexit.register(self._leave)
@@ -94,16 +103,17 @@ class Machine:
 
     def _compile(self, folder: Path | None) -> None:
         """Let a process of its own compile, then load what it left."""
-        with tempfile.TemporaryDirectory(prefix="raised-hand-") as elsewhere:
-            place = folder or Path(elsewhere)
-            build = self._build
-            names = (build.__module__, build.__name__)
-            command = [sys.executable, "-c", _COMPILE, *names, str(place)]
-            # More optimization costs time and gains none: nearly all is scalar arithmetic.
-            around = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_OPT": "1"}
+        build = self._build
+        command = [sys.executable, "-c", _COMPILE, build.__module__, build.__name__]
+        # More optimization costs time and gains none: nearly all is scalar arithmetic.
+        around = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_OPT": "1"}
+        with ExitStack() as until_done:
             try:
+                place = folder or Path(
+                    until_done.enter_context(tempfile.TemporaryDirectory(prefix="raised-hand-"))
+                )
                 compiler = subprocess.Popen(
-                    command, stdout=subprocess.DEVNULL, env={**os.environ, **around}
+                    [*command, str(place)], stdout=subprocess.DEVNULL, env={**os.environ, **around}
                 )
             except OSError as error:
                 LOG.warning("No compiler can be started (%s); Python tracks, slowly.", error)

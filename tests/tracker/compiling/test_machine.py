@@ -3,6 +3,7 @@
 import logging
 import subprocess
 import sys
+import tempfile
 import threading
 
 import pytest
@@ -141,20 +142,85 @@ def test_where_no_process_can_be_started_python_goes_on(
     assert "No compiler can be started" in caplog.text
 
 
-def test_a_program_that_ends_does_not_wait_for_its_compiler(small, folder):
-    module = small()
-    program = (
-        "import time\n"
+def test_without_a_place_for_passing_files_what_is_kept_is_compiled_all_the_same(
+    small, folder, monkeypatch, wait_for_the_compiler
+):
+    monkeypatch.setattr(tempfile, "tempdir", "/nowhere")
+    machine = Machine(small().build)
+    machine.start()
+    wait_for_the_compiler()
+    assert machine.code(3.0) == 6.0
+
+
+def test_where_nothing_can_be_written_at_all_python_goes_on(
+    small, monkeypatch, caplog, wait_for_the_compiler
+):
+    monkeypatch.setattr(files, "folder", lambda: None)
+    monkeypatch.setattr(tempfile, "tempdir", "/nowhere")
+    machine = Machine(small().build)
+    machine.start()
+    wait_for_the_compiler()
+    assert machine.code is None
+    assert "No compiler can be started" in caplog.text
+
+
+def program(module, folder, build, then=""):
+    """Starts the compiler of a function of that module; and what the program does then."""
+    return (
+        "import os, signal, time\n"
         "from pathlib import Path\n"
         "from tracker.compiling import files\n"
-        f"from {module.__name__} import build\n"
+        f"from {module.__name__} import {build} as build\n"
         "from tracker.compiling.machine import Machine\n"
-        f"files.folder = lambda: Path({str(folder)!r})\n"
-        "Machine(build).start()\n"
+        f"folder = Path({str(folder)!r})\n"
+        "files.folder = lambda: folder\n"
+        "machine = Machine(build)\n"
+        "machine.start()\n" + then
     )
-    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def ends(source):
+    """The exit status of a program, and what it says."""
+    ended = subprocess.run(
+        [sys.executable, "-c", source], capture_output=True, text=True, start_new_session=True
+    )
+    return ended.returncode, ended.stderr
+
+
+def test_a_program_that_ends_does_not_wait_for_its_compiler(small, folder):
+    assert ends(program(small(), folder, "build")) == (0, "")
     assert not files.are_in(folder)
+
+
+def test_ctrl_c_is_the_programs_and_the_compiler_says_nothing_of_it(small, folder):
+    interrupted = (
+        "while not list(folder.glob('*.begun')):\n"
+        "    time.sleep(0.01)\n"
+        "try:\n"
+        "    os.killpg(0, signal.SIGINT)\n"
+        "    time.sleep(60)\n"
+        "except KeyboardInterrupt:\n"
+        "    time.sleep(0.2)\n"
+    )
+    assert ends(program(small(), folder, "linger", interrupted)) == (0, "")
+
+
+def test_a_process_that_is_forked_off_meanwhile_gets_the_code_as_well(small, folder):
+    forked = (
+        "child = os.fork()\n"
+        "if child == 0:\n"
+        "    machine.finish(lambda sentence: None)\n"
+        "    os._exit(0 if machine.code and machine.code(3.0) == 6.0 else 1)\n"
+        "assert os.waitpid(child, 0)[1] == 0\n"
+    )
+    assert ends(program(small(), folder, "build", forked)) == (0, "")
+
+
+def test_programs_that_start_together_compile_one_after_the_other(small, folder):
+    source = program(small(), folder, "linger", "machine.finish(print)\n")
+    both = [subprocess.Popen([sys.executable, "-c", source]) for _ in range(2)]
+    assert [each.wait() for each in both] == [0, 0]
+    assert (folder / "diary").read_text() == "begin end begin end "
 
 
 def test_in_the_background_a_word_is_said_when_it_begins_and_when_it_is_done(
