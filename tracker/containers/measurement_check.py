@@ -123,7 +123,7 @@ def _are_plain(claims: Measurements) -> bool:
         and noise[:, ::3].min() > VARIANCE_MIN
         and (np.count_nonzero(noise[:, 1:3]) == 0 or _are_definite(noise, bool(alone)).all())
         and not (alone and np.count_nonzero(noise[:, ::3][absent] != 1.0))
-        and (np.count_nonzero(doubt) == 0 or _are_semidefinite(doubt).all())
+        and (np.count_nonzero(doubt) == 0 or are_semidefinite(doubt).all())
     )
 
 
@@ -245,15 +245,15 @@ def _faults_of_pose(claims: Measurements) -> Iterator[_Fault]:
         f"x_m, y_m and yaw_rad, each a finite number below {ABSURD_M:g}",
     )
     yield _Fault(
-        ~_are_semidefinite(doubt),
+        ~are_semidefinite(doubt),
         lambda row: f"the sensor_pose_covariance {doubt[row].tolist()}",
         f"a symmetric positive semidefinite matrix of numbers below {VARIANCE_MAX:g}",
         "Leave it out (None) where the sensor's pose is well known.",
     )
 
 
-def _are_semidefinite(covariance: FloatArray) -> BoolArray:
-    """Shape (M,): which of the matrices, shape (M, 3, 3), could be a covariance."""
+def are_semidefinite(covariance: FloatArray) -> BoolArray:
+    """Shape (M,): which of the matrices, shape (M, n, n), could be a covariance."""
     finite = np.asarray((np.abs(covariance) < VARIANCE_MAX).all(axis=(1, 2)))
     safe = np.where(finite[:, None, None], covariance, 0.0)
     asymmetry = np.abs(safe - np.swapaxes(safe, 1, 2)).max(axis=(1, 2))

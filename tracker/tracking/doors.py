@@ -9,6 +9,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from tracker.containers import FloatArray, IntArray
+from tracker.containers.measurement_check import are_semidefinite
 from tracker.errors import ShapeError
 from tracker.tracking.association import associate
 from tracker.tracking.gating import Pairs
@@ -73,15 +74,12 @@ def association_by(associator: Associator | None) -> Associate:
 
 
 def _checked(name: str, given: FloatArray, shape: tuple[int, ...]) -> FloatArray:
-    """Numbers from the user's function, if they fit.
-
-    Raises:
-        ShapeError: They have another shape, or are not finite.
-    """
+    """Numbers from the user's function; a `ShapeError` where they do not fit."""
     numbers = np.asarray(given, dtype=np.float64)
-    if numbers.shape != shape or not np.isfinite(numbers).all():
+    is_fit = numbers.shape == shape and np.isfinite(numbers).all()
+    if not is_fit or (numbers.ndim == 3 and not are_semidefinite(numbers).all()):
         raise ShapeError(
-            f"The {name} have shape {numbers.shape}, or are not finite; needed are finite "
-            f"numbers of shape {shape}."
+            f"The {name} have shape {numbers.shape}, or are not finite or no covariances; needed "
+            f"are finite numbers of shape {shape}, covariances symmetric and not negative."
         )
     return numbers

@@ -146,6 +146,8 @@ def test_probabilities_count_as_shares():
         {"motion": lambda mean, covariance, dt_s: (mean, covariance[:, :2])},
         {"motion": lambda mean, covariance, dt_s: (mean * np.nan, covariance)},
         {"motion": lambda mean, covariance, dt_s: (mean, covariance + np.inf)},
+        {"motion": lambda mean, covariance, dt_s: (mean, -covariance)},
+        {"motion": lambda mean, covariance, dt_s: (mean, covariance + np.tri(4))},
         {"associate": lambda odds: np.zeros((3, 3))},
         {"associate": lambda odds: np.full(odds.shape, np.nan)},
         {"associate": lambda odds: np.full(odds.shape, -0.1)},
@@ -154,12 +156,14 @@ def test_probabilities_count_as_shares():
     ],
     ids=[
         *("mean's shape", "covariance's shape", "mean not finite", "covariance not finite"),
+        *("covariance negative", "covariance not symmetric"),
         *("shape", "not finite", "negative", "rows above 1", "columns above 1"),
     ],
 )
-def test_what_does_not_fit_is_refused(given):
+def test_what_does_not_fit_is_refused_at_once(given):
+    tracker = PersonTracker(**given)
     with pytest.raises(ShapeError, match=f"`{next(iter(given))}`"):
-        run(PersonTracker(**given), [at((2.0, 1.0), (4.0, 1.0))] * 3)
+        run(tracker, [at((2.0, 1.0), (4.0, 1.0))] * 2)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
