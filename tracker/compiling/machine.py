@@ -27,12 +27,13 @@ _LOOK_S = 0.1
 #: What the compiler's process does, once whoever compiles into the same folder is done; whatever
 #: else runs goes first. Ctrl-C is meant for the program, which ends its compiler.
 _COMPILE = """
-import contextlib, fcntl, importlib, os, pathlib, signal, sys
+import contextlib, importlib, os, pathlib, signal, sys
 signal.signal(signal.SIGINT, signal.SIG_IGN)
 os.nice(10)
 module, name, place = sys.argv[1:]
 with open(os.path.join(place, "lock"), "w") as lock:
-    with contextlib.suppress(OSError):  # some file systems have no locks
+    with contextlib.suppress(ImportError, OSError):  # some systems have no locks
+        import fcntl
         fcntl.flock(lock, fcntl.LOCK_EX)
     getattr(importlib.import_module(module), name)(pathlib.Path(place))
 """
