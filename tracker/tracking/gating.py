@@ -71,35 +71,29 @@ def find_pairs(
         density: Of such measurements of nobody known, per square meter.
         settings: Of the tracker.
     """
-    modes, tracks = len(people.weight), people.weight.shape[1]
-    room = tracks * len(rows)
-    track, claim = np.empty(room, np.int64), np.empty(room, np.int64)
-    log_likelihood, log_newcomer, log_odds = (
-        np.empty((room, modes)),
-        np.empty(room),
-        np.empty(room),
-    )
-    near, pairs = np.empty(len(rows), np.int64), 0
+    modes, tracks, pairs = len(people.weight), people.weight.shape[1], 0
+    track = np.empty(tracks * len(rows), np.int64)
+    claim = np.empty(tracks * len(rows), np.int64)
     for person in range(tracks):
-        count = _inside_gate(person, mean, covariance, claims, rows, near, settings)
+        begin = pairs
+        pairs = _inside_gate(person, mean, covariance, claims, rows, claim, begin, settings)
+        for pair in range(begin, pairs):
+            track[pair] = person
+    log_likelihood, log_newcomer = np.empty((pairs, modes)), np.empty(pairs)
+    log_odds = np.empty(pairs)
+    for pair in range(pairs):
+        person, row, likelihood = track[pair], claim[pair], 0.0
+        for mode in range(modes):
+            likely = _log_likelihood(people, mode, person, claims, row, settings)
+            log_likelihood[pair, mode] = likely
+            if modes == 2:
+                likely += np.log(people.weight[mode, person])
+            likelihood = likely if mode == 0 else log_of_sum(likelihood, likely)
+        log_newcomer[pair] = np.log(density * area(claims.kind[row], claims, row, settings))
         log_missed = np.log(chance[person] / (1.0 - chance[person]))
-        for number in range(count):
-            row, likelihood = near[number], 0.0
-            for mode in range(modes):
-                likely = _log_likelihood(people, mode, person, claims, row, settings)
-                log_likelihood[pairs, mode] = likely
-                if modes == 2:
-                    likely += np.log(people.weight[mode, person])
-                likelihood = likely if mode == 0 else log_of_sum(likelihood, likely)
-            track[pairs], claim[pairs] = person, row
-            log_newcomer[pairs] = np.log(density * area(claims.kind[row], claims, row, settings))
-            log_odds[pairs] = likelihood - log_newcomer[pairs] + log_missed
-            log_odds[pairs] += _log_likeness(people, person, claims, row, likeness)
-            pairs += 1
-    return Pairs(
-        track[:pairs], claim[:pairs], log_likelihood[:pairs], log_newcomer[:pairs],
-        log_odds[:pairs],
-    )  # fmt: skip
+        log_odds[pair] = likelihood - log_newcomer[pair] + log_missed
+        log_odds[pair] += _log_likeness(people, person, claims, row, likeness)
+    return Pairs(track[:pairs], claim[:pairs], log_likelihood, log_newcomer, log_odds)
 
 
 @loop
@@ -110,10 +104,11 @@ def _inside_gate(
     claims: Claims,
     rows: IntArray,
     near: IntArray,
+    count: int,
     settings: Settings,
 ) -> int:
-    """Write down the rows inside somebody's gate, and say how many there are."""
-    count, kind = 0, -1
+    """Write the rows inside somebody's gate behind those that are there; says where they end."""
+    kind = -1
     expected, own = (0.0, 0.0), (0.0, 0.0, 0.0)
     limit, far, dof = 0.0, 0.0, 0.0
     for place in range(len(rows)):
@@ -129,11 +124,13 @@ def _inside_gate(
             far = limit
             if dof > 0.0:  # ranges may be farther off, under the Student-t
                 far = max(far, dof * np.expm1(limit / (dof + 1.0)))
-        y = innovation_of(kind, expected, claims, row)
         r = noise_of(kind, claims, row)
-        # Each number alone rules most pairs out.
-        is_near = y[0] * y[0] <= limit * (own[0] + r[0])
-        if not (is_near and y[1] * y[1] <= far * (own[2] + r[2])):
+        # Each number alone rules most pairs out; the second first, since it does not wrap.
+        apart = 0.0 if kind == BEARING else claims.values[row, 1] - expected[1]
+        if apart * apart > far * (own[2] + r[2]):
+            continue
+        y = innovation_of(kind, expected, claims, row)
+        if y[0] * y[0] > limit * (own[0] + r[0]):
             continue
         s = own[0] + r[0], own[1] + r[1], own[2] + r[2]
         if squared_distance(y, s, dof)[0] <= limit:
