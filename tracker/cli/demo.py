@@ -47,7 +47,8 @@ def demo_command(
     from tracker.replay_outputs import replay_files
     from tracker.report.episode_table import episode_table
 
-    parameters = parameters_from(config, param)
+    # Its drawn people wave and talk in a way that `evidence` takes for one call more; see README.
+    parameters = parameters_from(config, ["raise_rule:=palm", *(param or [])])
     recording = out / "recording.mcap"
     given = Path(scene) if Path(scene).is_file() else None
     check_inputs_stay(
