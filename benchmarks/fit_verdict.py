@@ -42,7 +42,7 @@ from tracker.simulation.stream import map_from_camera
 LOOKS = 14
 #: In place of raised wrists: the highest hand calls, and of the others nobody knows.
 HIGHEST = np.full((1, 2), np.nan)
-#: Cases that fair judges dispute count less, people of whom there are few pictures more.
+#: Cases that one may judge either way count less; people with few pictures count more.
 SHARES = {"sign_at_shoulder": 0.4, "fist_beside_head": 0.5, "clips": 3.0, "people_more": 2.0}
 #: A hand is the labeled one within so many lengths of it, or pixels.
 _NEAR_HANDS, _NEAR_PX = 0.6, 12.0

@@ -1,7 +1,7 @@
 """Where do ranges to one person meet? Three sensors at once that know no bearing give a position.
 
 Least squares over the ranges. Two sensors, or a line of them, leave a second place, and a single
-range is a ring: those are left as they are, and correct whoever is tracked already.
+range is a ring: those are left as they are, and correct people who are tracked already.
 """
 
 from __future__ import annotations

@@ -103,7 +103,7 @@ def seen_from(
 def squared_distance(
     y: tuple[float, float], s: tuple[float, float, float], dof: float
 ) -> tuple[float, float]:
-    """Y' inv(S) y, and the determinant of S.
+    """The squared distance y' inv(S) y, and the determinant of S.
 
     The second number is taken given the first: the distance is a sum of two squares then, and the
     second square is where a Student-t's tail belongs, (nu + 1) log(1 + d^2 / nu).

@@ -86,7 +86,7 @@ def area(kind: int, claims: Claims, row: int, settings: Settings) -> float:
 def begin(
     kind: int, claims: Claims, row: int, settings: Settings
 ) -> tuple[float, float, float, float, float]:
-    """x, y and their covariance (xx, xy, yy) of somebody of whom nothing else is known.
+    """x, y and their covariance (xx, xy, yy) of somebody who is new.
 
     A bearing alone is supposed at `unknown_range_m`; a range alone is a ring around the sensor.
     """

@@ -8,7 +8,7 @@ from tracker.tracking.people import copy_person, kept, room_for, with_room
 
 @pytest.fixture
 def people():
-    """Three in two modes, of whom every number differs."""
+    """Three people in two modes; all numbers differ."""
     room = room_for(2, 3, 4)
     rng = np.random.default_rng(1)
     for array in room:

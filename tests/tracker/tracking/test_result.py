@@ -11,7 +11,7 @@ from tracker.tracking.result import customers_of, tracks_of
 
 @pytest.fixture
 def frame_of(people_of, merged):
-    """A frame with people of these identities, the third of whom has a hand up."""
+    """A frame with these identities; the third person has a hand up."""
 
     def frame(*ids):
         count = len(ids)

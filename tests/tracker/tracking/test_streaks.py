@@ -6,7 +6,7 @@ from tracker.tracking.streaks import step_streak
 
 
 def beginning(people):
-    """Counts and flags of so many, of whom nothing was seen."""
+    """Counts and flags of people who were not seen yet."""
     return np.zeros((10, people), dtype=np.int64), np.zeros((2, people), dtype=bool)
 
 

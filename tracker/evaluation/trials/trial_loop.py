@@ -18,11 +18,11 @@ from tracker.tracking.frame import track_frame
 from tracker.tracking.instant import Instant
 from tracker.tracking.motion import modes_of
 from tracker.tracking.people import CONFIRMED, ID, RAISED, People, room_for
+from tracker.tracking.person_tracker import NO_LIKENESS
 from tracker.tracking.renewal import Frame
 from tracker.tracking.settings import Settings, settings_of
 from tracker.tracking.trace import NO_TRACE, Trace
 
-_NO_LIKENESS = sealed(np.zeros((0, 0)))
 #: There is room for so many customers a frame at first.
 PEOPLE_EXPECTED = 8
 
@@ -85,7 +85,7 @@ def track_sensed(stamps_ns: IntArray, sensed: SensedFrames, config: Config) -> T
     )
     nobody = room_for(modes_of(config), 0, config.confirm_window)
     track = machine_code(track_trial)
-    rows = track(given, nobody, _NO_LIKENESS, settings_of(config), NO_TRACE)
+    rows = track(given, nobody, NO_LIKENESS, settings_of(config), NO_TRACE)
     end = int(rows.counts.sum())
     return TrackFrames.from_rows(
         rows.counts, rows.id[:end], rows.xy_m[:end], rows.covariance_m2[:end], rows.raised[:end]
