@@ -20,7 +20,6 @@ from tracker.cli.options import (
     print_json,
 )
 from tracker.cli.simulate import simulate
-from tracker.config import Config
 from tracker.errors import RecordingError
 from tracker.outputs import check_inputs_stay
 from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed
@@ -48,8 +47,7 @@ def demo_command(
     from tracker.replay_outputs import replay_files
     from tracker.report.episode_table import episode_table
 
-    # Its drawn people wave and talk in a way that `evidence` takes for one call more; see README.
-    parameters = parameters_from(config, param, Config(raise_rule="palm"))
+    parameters = parameters_from(config, param)
     recording = out / "recording.mcap"
     given = Path(scene) if Path(scene).is_file() else None
     check_inputs_stay(

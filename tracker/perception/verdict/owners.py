@@ -13,6 +13,10 @@ from tracker.perception.verdict.raise_rules import MIDDLE_ROOT
 _OWN_WRIST_SHOULDERS = 0.6
 #: So close a wrist makes an owner sure: ninety-nine in a hundred hands of drawn callers were.
 _SURE_WRIST_SHOULDERS = 0.35
+#: Of two bodies whose wrists are near, a left wrist has to be so much nearer to a right hand than
+#: a right one, in widths of the shoulders: pose models lend a neighbor's hand to a body that they
+#: see better (guess).
+_OTHER_SIDE_SHOULDERS = 0.4
 #: How long an own hand may be, in widths of the shoulders: drawn callers' measure 0.3 to 0.9, more
 #: if held to the camera, and less if closed. Neighbors much nearer or farther do not fit (guess).
 _OWN_HAND_SHOULDERS = (0.18, 1.2)
@@ -58,24 +62,37 @@ def find_owners(
         return np.full(len(hands), -1, dtype=np.int64)
     size = hand_size_px(hands)[:, None] / bodies.shoulder_px
     fits = (size > _OWN_HAND_SHOULDERS[0]) & (size < _OWN_HAND_SHOULDERS[1])
-    wrist = apart_px(hands.wrist_px, bodies, WRISTS).min(axis=-1) / bodies.shoulder_px
-    wrist = np.where(fits, wrist, np.inf)
+    wrist, misfit = _wrist_misfits(hands, bodies)
+    misfit = np.where(fits & (wrist < reach_shoulders), misfit, np.inf)
     is_lost = fits & ~bodies.is_visible[:, WRISTS].all(axis=1)
     middle = hands.landmarks_px[:, MIDDLE_ROOT]
     head = np.where(is_lost, apart_px(middle, bodies, HEAD).min(axis=-1), np.inf)
     head = head / bodies.shoulder_px
-    by_wrist, by_head = wrist.argmin(axis=1), head.argmin(axis=1)
-    owner = np.where(head.min(axis=1) < reach_shoulders, by_head, -1)
-    return np.where(wrist.min(axis=1) < reach_shoulders, by_wrist, owner)
+    owner = np.where(head.min(axis=1) < reach_shoulders, head.argmin(axis=1), -1)
+    return np.where(np.isfinite(misfit).any(axis=1), misfit.argmin(axis=1), owner)
 
 
 def sure_owners(hands: Hands, bodies: Bodies) -> IntArray:
     """Whose hand is it beyond doubt? Rows of `bodies`, shape (H,); -1 where it is not sure."""
     owner = find_owners(hands, bodies, _SURE_WRIST_SHOULDERS)
-    if len(bodies) == 0:
+    if len(bodies) == 0 or len(hands) == 0:
         return owner
-    wrist = apart_px(hands.wrist_px, bodies, WRISTS).min(axis=-1) / bodies.shoulder_px
-    return np.where(wrist[np.arange(len(hands)), owner] < _SURE_WRIST_SHOULDERS, owner, -1)
+    wrist, misfit = (fit[np.arange(len(hands)), owner] for fit in _wrist_misfits(hands, bodies))
+    is_other_side = misfit - wrist > _OTHER_SIDE_SHOULDERS / 2.0
+    return np.where((wrist < _SURE_WRIST_SHOULDERS) & ~is_other_side, owner, -1)
+
+
+def _wrist_misfits(hands: Hands, bodies: Bodies) -> tuple[FloatArray, FloatArray]:
+    """How far each hand is from each body's wrist that fits it better, and how badly that fits.
+
+    Two arrays of shape (H, P), in widths of the shoulders; the second counts the wrong side too.
+    """
+    apart = apart_px(hands.wrist_px, bodies, WRISTS) / bodies.shoulder_px[:, None]
+    other_side = np.stack([hands.right, 1.0 - hands.right], axis=-1)
+    misfit = apart + _OTHER_SIDE_SHOULDERS * other_side[:, None]
+    side = misfit.argmin(axis=-1)[..., None]
+    wrist = np.take_along_axis(apart, side, axis=-1)[..., 0]
+    return wrist, misfit.min(axis=-1)
 
 
 def arms_without_hand(hands: Hands, bodies: Bodies) -> BoolArray:

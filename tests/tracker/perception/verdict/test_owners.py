@@ -1,5 +1,6 @@
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tracker.containers import Hands
@@ -59,6 +60,21 @@ def test_an_owner_is_sure_where_the_wrists_nearly_meet(body, upright_hand):
     assert sure_owners(beside, body(**UP)).tolist() == [-1]
     assert find_owners(beside, body(**UP)).tolist() == [0]
     assert sure_owners(upright_hand((183, 73)), body(right_wrist=None)).tolist() == [-1]
+
+
+def test_a_right_hand_is_not_a_neighbors_left(body, upright_hand):
+    neighbor, owner = body(left_wrist=(150, 70)), body(right_wrist=(158, 70))
+    right = upright_hand((150, 72))
+    left = replace(right, right=np.zeros(1))
+    both = Bodies.concatenate(neighbor, owner)
+    assert find_owners(right, both).tolist() == sure_owners(right, both).tolist() == [1]
+    assert find_owners(left, both).tolist() == sure_owners(left, both).tolist() == [0]
+
+
+def test_a_hand_on_the_wrong_side_has_an_owner_who_is_not_sure(body, upright_hand):
+    right, neighbor = upright_hand((150, 72)), body(left_wrist=(150, 70))
+    assert find_owners(right, neighbor).tolist() == [0]
+    assert sure_owners(right, neighbor).tolist() == [-1]
 
 
 def test_a_fist_is_as_large_as_its_palm_says(upright_hand):
