@@ -15,7 +15,7 @@ from __future__ import annotations
 import argparse
 import csv
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
@@ -42,8 +42,9 @@ from tracker.simulation.stream import map_from_camera
 LOOKS = 14
 #: In place of raised wrists: the highest hand calls, and of the others nobody knows.
 HIGHEST = np.full((1, 2), np.nan)
-#: Cases that one may judge either way count less; people with few pictures count more.
-SHARES = {"sign_at_shoulder": 0.4, "fist_beside_head": 0.5, "clips": 3.0, "people_more": 2.0}
+#: Cases that one may judge either way count less, and drawn people; people with few pictures count
+#: more.
+SHARES = {"sign_at_shoulder": 0.4, "clips": 3.0, "people_more": 2.0, "callers": 0.5, "idlers": 1.5}
 #: A hand is the labeled one within so many lengths of it, or pixels.
 _NEAR_HANDS, _NEAR_PX = 0.6, 12.0
 
@@ -136,11 +137,11 @@ def drawn(watcher: Watcher, callers: int, idlers: int, seed: int) -> Iterator[Se
     for number, item in enumerate(conditions):
         rng = trial_rng(seed, number)
         scene = caller_scene(item, 2.0, 10.0, rng)
-        yield watcher.play(rendered(scene, rng), "drawn", 1.0)
+        yield watcher.play(rendered(scene, rng), "drawn", SHARES["callers"])
     for number in range(idlers):
         rng = trial_rng(seed, 1_000_000 + number)
         scene = idlers_scene(number, 8.0, (1.0, 5.0), 10.0, rng)
-        yield replace(watcher.play(rendered(scene, rng), "drawn", 1.0), share=3.0)
+        yield watcher.play(rendered(scene, rng), "drawn", SHARES["idlers"])
 
 
 def rendered(

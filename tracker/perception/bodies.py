@@ -24,6 +24,9 @@ _NOSE_RISE = 0.2
 #: Bodies whose points are closer than this, on average, are one person's (guess).
 _SAME_BODY_SHOULDERS = 0.5
 
+#: Of somebody who faces the camera the shoulders are about as far from the nose, one at least so
+#: much of the other (guess).
+_EVEN_SHOULDERS = 0.5
 #: Wrists so far below the shoulders, in their widths, are about as high.
 _ABOUT_LEVEL = 0.2
 
@@ -136,24 +139,34 @@ class Bodies(Rows):
 
         NaN where a shoulder is missing.
         """
-        shoulders, hips = self._middle_of(SHOULDERS), self._middle_of(HIPS)
+        shoulders, hips = self._shoulders_px(), self._middle_of(HIPS)
         return np.where(np.isnan(hips), shoulders, (shoulders + hips) / 2)
 
     @property
     def shoulder_px(self) -> FloatArray:
         """Shape (P,): the shoulders' width, the yardstick of a body; NaN where one is missing.
 
-        Somebody who stands sideways is measured by the trunk instead, where hips are seen.
+        One that the picture's edge cuts off is where the model supposes it, if that is about as
+        far from the head as the other. Somebody who stands sideways is measured by the trunk
+        instead, where hips are seen.
         """
-        shoulders, hips = self._middle_of(SHOULDERS), self._middle_of(HIPS)
+        shoulders, hips = self._shoulders_px(), self._middle_of(HIPS)
         width = 2.0 * np.linalg.norm(self.points_px[:, SHOULDERS[0]] - shoulders, axis=-1)
         trunk = np.linalg.norm(hips - shoulders, axis=-1)
         wider = np.fmax(width, _SHOULDERS_PER_TRUNK * trunk)
         return np.where(wider > 0.0, wider, np.nan)
 
-    def _middle_of(self, joints: list[Joint]) -> FloatArray:
-        seen = self.is_visible[:, joints].all(axis=1, keepdims=True)
-        return np.where(seen, self.points_px[:, joints].mean(axis=1), np.nan)
+    def _shoulders_px(self) -> FloatArray:
+        """Shape (P, 2): the middle of both shoulders, NaN where one is missing."""
+        seen = self.is_visible
+        left, right = (self.points_px[:, SHOULDERS, 0] - self.points_px[:, [Joint.NOSE], 0]).T
+        is_even = np.minimum(left, -right) > _EVEN_SHOULDERS * np.maximum(left, -right)
+        is_one_supposed = seen[:, SHOULDERS].any(axis=1) & seen[:, Joint.NOSE] & is_even
+        return self._middle_of(SHOULDERS, is_one_supposed)
+
+    def _middle_of(self, joints: list[Joint], is_supposed: BoolArray | bool = False) -> FloatArray:
+        is_known = np.asarray(self.is_visible[:, joints].all(axis=1) | is_supposed)
+        return np.where(is_known[:, None], self.points_px[:, joints].mean(axis=1), np.nan)
 
 
 def same_people(first: Bodies, second: Bodies) -> BoolArray:

@@ -36,7 +36,7 @@ from tracker.perception.verdict.weights import NAMES, log_odds, reasons
 #: An arm that was seen so long ago still counts where no hand was found.
 _ARM_MAX_AGE_S = 0.2
 #: A hand that is less likely than this to call, for itself, waits for a look at its owner.
-_MAY_CALL = -2.0
+_MAY_CALL = -3.25
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,7 +145,8 @@ class CallFinder:
         for row in np.flatnonzero(~seen.is_found):
             faint[row] = known[row].doubt(stamp_ns, float(faint[row]))
         odds = log_odds(evidence)
-        high = evidence[:, NAMES.index("high")]
+        high = np.maximum(evidence[:, NAMES.index("high")], evidence[:, NAMES.index("swing")])
+        high[(seen.owner < 0) & (high == 0.0)] = np.nan
         belief = np.array(
             [
                 item.weigh(stamp_ns, *told)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -17,6 +19,17 @@ def test_without_a_shoulder_there_is_neither_torso_nor_yardstick(body):
     somebody = body(right_shoulder=None)
     assert np.isnan(somebody.torso_px).all()
     assert np.isnan(somebody.shoulder_px).all()
+
+
+def test_a_shoulder_beyond_the_pictures_edge_is_where_the_model_supposes_it(body):
+    somebody = body()
+    unsure = somebody.visibility.copy()
+    unsure[0, Joint.LEFT_SHOULDER] = 0.1
+    cut_off = replace(somebody, visibility=unsure)
+    np.testing.assert_allclose(cut_off.shoulder_px, somebody.shoulder_px)
+    uneven = somebody.points_px.copy()
+    uneven[0, Joint.LEFT_SHOULDER, 0] = 245.0  # 45 px from the nose, the other 20
+    assert np.isnan(replace(cut_off, points_px=uneven).shoulder_px).all()
 
 
 def test_the_yardstick_is_the_width_of_the_shoulders(body):

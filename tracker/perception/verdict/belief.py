@@ -8,8 +8,8 @@ import numpy as np
 FIRST_LOG_ODDS, FADE_S = -1.75, 2.0
 #: Images of one hand are alike; each adds this share of its evidence.
 IMAGE_SHARE = 0.5
-#: No belief is stronger than this, so that a hand that goes down is soon noticed.
-LOG_ODDS_MAX = 6.0
+#: No belief is weaker or stronger, so that a hand that goes up, or down, is soon noticed.
+LOG_ODDS_MIN, LOG_ODDS_MAX = -3.0, 6.0
 #: Wrists lower above the shoulder than the first, in widths of the shoulders, are not up; those
 #: higher than the second are.
 UP_SHOULDERS = (0.1, 0.3)
@@ -19,7 +19,7 @@ STILL_UP_MIN, NOT_UP_MAX = -0.5, 0.75
 
 
 def update_belief(
-    before: float, passed_s: float, evidence: float, high_shoulders: float = 0.2
+    before: float, passed_s: float, evidence: float, high_shoulders: float = float("nan")
 ) -> float:
     """The log-odds that a hand calls, after one more image.
 
@@ -32,10 +32,10 @@ def update_belief(
         before: Log-odds before this image; NaN for a hand that is new.
         passed_s: Since then.
         evidence: Log-odds of this image alone.
-        high_shoulders: How far the wrist is above the shoulder, in their widths; 0 where it is
-            not, or nobody knows. A hand that called a moment ago and is still up may pass before
-            the face, as in a wave: it is given up but slowly. One that is not up must stay: hands
-            of people who talk show their palms for half a second.
+        high_shoulders: How far the wrist is above the shoulder, in their widths, or how surely it
+            waves; NaN where nobody knows. A hand that called a moment ago and is still up may pass
+            before the face: it is given up but slowly. One that is not up must stay: hands of
+            people who talk show their palms for half a second.
     """
     if high_shoulders > UP_SHOULDERS[1] and before > 0.0:
         evidence = max(evidence, STILL_UP_MIN)
@@ -44,4 +44,4 @@ def update_belief(
     faded = FIRST_LOG_ODDS
     if np.isfinite(before):
         faded += (before - FIRST_LOG_ODDS) * float(np.exp(-passed_s / FADE_S))
-    return float(np.clip(faded + IMAGE_SHARE * evidence, -LOG_ODDS_MAX, LOG_ODDS_MAX))
+    return float(np.clip(faded + IMAGE_SHARE * evidence, LOG_ODDS_MIN, LOG_ODDS_MAX))

@@ -63,6 +63,10 @@ def gather_evidence(hands: Hands, bodies: Bodies, seen: Seen) -> FloatArray:
     fingers, thumb = shape.pop("fingers"), shape.pop("thumb")
     stretched, bent = np.clip(fingers, 0.0, 1.0), np.clip(-fingers, 0.0, 1.0)
     palm = stretched * np.clip(shape["rise"], 0.0, 1.0)
+    is_alone = arm["forearm"] == 0.0
+    # Talking hands move to and fro as well, but low and half open.
+    upright_palm = palm * np.where(is_alone, 1.0, arm["forearm"])
+    wave = seen.swing * np.clip(np.maximum(2.0 * arm["high"], upright_palm), 0.0, 1.0)
     low, head = arm["low"], arm["head"]
     columns = {
         **shape,
@@ -73,18 +77,17 @@ def gather_evidence(hands: Hands, bodies: Bodies, seen: Seen) -> FloatArray:
         "thumb": bent * np.clip(thumb, 0.0, 1.0),
         "owned": owned,
         "unowned": (1.0 - owned) * seen.is_asked,
-        # Where no body says more, an open palm that is surely a hand speaks for itself.
-        "alone": (1.0 - owned) * palm * np.clip(shape["score"], 0.0, 1.0),
+        # Where no arm says more, an open palm that is surely a hand speaks for itself.
+        "alone": is_alone * palm * np.clip(shape["score"], 0.0, 1.0),
         # An open hand before the shoulder may call, a closed one must be above it.
         "low": low * (1.0 - palm),
         "palm_low": low * palm,
         "fist_low": owned * bent * np.clip(1.0 - arm["high"] / _ABOVE, 0.0, 1.0),
         # A telephone, a cup or an itch bends the hand; a palm that is shown beside the head is a
-        # greeting, and one on the head is none.
+        # greeting, one on the head is none, unless it passes there as it waves.
         "head": head * (1.0 - palm),
-        "palm_on_head": palm * np.clip(2.0 * head / _ON_HEAD - 2.0, 0.0, 1.0),
-        # Talking hands move to and fro as well, but low.
-        "swing": seen.swing * np.clip(2.0 * arm["high"], 0.0, 1.0),
+        "palm_on_head": palm * np.clip(2.0 * head / _ON_HEAD - 2.0, 0.0, 1.0) * (1.0 - wave),
+        "swing": wave,
     }
     return np.stack([columns[name] for name in NAMES], axis=-1)
 

@@ -13,8 +13,9 @@ from tracker.perception.verdict.owners import hand_size_px
 
 #: A hand that waves goes so far from one image to the next, in its lengths ...
 _REACH_HANDS = 1.5
-#: ... and an unseen one is remembered for so long.
-_FORGET_AFTER_S = 1.0
+#: ... and an unseen one is remembered for so long; one seen later is likelier by so many lengths
+#: for each second.
+_FORGET_AFTER_S, _OLDER_HANDS = 1.0, 6.0
 #: Arms blur when they move: doubt about a body that was sure comes back in so long, s (guess).
 _DOUBT_S = 2.0
 #: A wave of the hand takes about half a second; so long a time shows two.
@@ -53,7 +54,7 @@ class RememberedHand:
         self.faint = min(faint, self.faint + passed_s / _DOUBT_S)
         return self.faint
 
-    def weigh(self, stamp_ns: int, evidence: float, high_shoulders: float = 0.2) -> float:
+    def weigh(self, stamp_ns: int, evidence: float, high_shoulders: float = float("nan")) -> float:
         """The log-odds that the hand calls, after an image's evidence; see `update_belief`."""
         passed_s = (stamp_ns - self.weighed_ns) / 1e9
         self.log_odds = update_belief(self.log_odds, passed_s, evidence, high_shoulders)
@@ -81,7 +82,7 @@ class HandMemory:
         kept = [
             item for item in self._hands if 0 <= stamp_ns - item.seen_ns <= _FORGET_AFTER_S * 1e9
         ]
-        rows = _same_rows(kept, hands)
+        rows = _same_rows(kept, hands, stamp_ns)
         size_px = hand_size_px(hands)
         answer = []
         for row in range(len(hands)):
@@ -103,7 +104,7 @@ class HandMemory:
         self._hands = []
 
 
-def _same_rows(known: list[RememberedHand], hands: Hands) -> IntArray:
+def _same_rows(known: list[RememberedHand], hands: Hands, stamp_ns: int) -> IntArray:
     """Shape (H,): the remembered hand that each is; -1 for new ones."""
     rows = np.full(len(hands), -1, dtype=np.int64)
     if not known or len(hands) == 0:
@@ -111,7 +112,9 @@ def _same_rows(known: list[RememberedHand], hands: Hands) -> IntArray:
     places = np.array([item.wrist_px for item in known])
     length = np.fmax(hand_size_px(hands)[:, None], [item.size_px for item in known])
     apart = np.linalg.norm(hands.wrist_px[:, None] - places, axis=-1) / np.maximum(length, 8.0)
-    pairs = linear_sum_assignment(np.minimum(apart, 10.0 * _REACH_HANDS))
+    age_s = np.array([stamp_ns - item.seen_ns for item in known]) / 1e9
+    misfit = np.where(apart <= _REACH_HANDS, apart + _OLDER_HANDS * age_s, 100.0)
+    pairs = linear_sum_assignment(misfit)
     for hand, item in zip(*pairs, strict=True):
         if apart[hand, item] <= _REACH_HANDS:
             rows[hand] = item

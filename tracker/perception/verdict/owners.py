@@ -78,7 +78,7 @@ def sure_owners(hands: Hands, bodies: Bodies) -> IntArray:
     if len(bodies) == 0 or len(hands) == 0:
         return owner
     wrist, misfit = (fit[np.arange(len(hands)), owner] for fit in _wrist_misfits(hands, bodies))
-    is_other_side = misfit - wrist > _OTHER_SIDE_SHOULDERS / 2.0
+    is_other_side = misfit > wrist + _OTHER_SIDE_SHOULDERS / 2.0
     return np.where((wrist < _SURE_WRIST_SHOULDERS) & ~is_other_side, owner, -1)
 
 

@@ -5,6 +5,7 @@ from tracker.perception.verdict.belief import (
     FIRST_LOG_ODDS,
     IMAGE_SHARE,
     LOG_ODDS_MAX,
+    LOG_ODDS_MIN,
     update_belief,
 )
 
@@ -38,6 +39,15 @@ def test_a_belief_without_evidence_fades_to_the_first():
 
 def test_a_hand_that_goes_down_is_down_within_half_a_second():
     assert after(-4.0, 5, before=LOG_ODDS_MAX) < 0.0
+
+
+def test_a_hand_that_was_at_the_face_for_long_calls_soon_once_it_goes_up():
+    assert after(-9.0, 30) == LOG_ODDS_MIN
+    assert after(4.0, 3, before=LOG_ODDS_MIN) > 0.0
+
+
+def test_a_hand_of_which_nobody_knows_the_shoulder_need_not_stay():
+    assert after(3.0, 3) > 0.0 > update_belief(float("nan"), 0.1, 3.0, 0.0)
 
 
 def test_a_hand_that_called_and_is_still_up_passes_the_face_in_a_wave():

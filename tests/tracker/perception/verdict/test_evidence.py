@@ -141,6 +141,27 @@ def test_a_palm_that_is_shown_beside_the_head_is_told_from_one_on_it(body, uprig
     assert on_head["head"] < 0.2
 
 
+def test_a_palm_that_waves_past_the_head_is_not_on_it(body, upright_hand):
+    hand = upright_hand((188, 72), palm_px=12.0)
+    joints = {f"p{row}": (188, 55) for row in (6, 10, 14, 18)}
+    palm = shaped(hand, **joints, **{f"p{row}": (188, 48) for row in (8, 12, 16, 20)})
+    owner = body(right_elbow=(188, 102), right_wrist=(188, 72))
+    still, waving = (evidence(palm, owner, swing=swing) for swing in (0.0, 1.0))
+    assert still["palm_on_head"] > 0.5
+    assert waving["palm_on_head"] < 0.1
+    assert waving["head"] == still["head"]
+
+
+def test_a_wave_is_a_hand_above_the_shoulder_or_a_palm_on_an_upright_arm(body, upright_hand):
+    low = {"right_elbow": (150, 130), "right_wrist": (150, 102)}
+    hand = upright_hand((150, 102))
+    joints = {f"p{row}": (150, 88) for row in (6, 10, 14, 18)}
+    palm = shaped(hand, **joints, **{f"p{row}": (150, 83) for row in (8, 12, 16, 20)})
+    assert evidence(palm, body(**low), swing=1.0)["swing"] > 0.8
+    assert evidence(hand, body(**low), swing=1.0)["swing"] < 0.5
+    assert evidence(upright_hand((148, 70)), body(**UP), swing=1.0)["swing"] == 1.0
+
+
 def test_a_fist_must_be_above_the_shoulder(body, upright_hand):
     hand = upright_hand((150, 98))
     joints = {f"p{row}": (150, 80) for row in (6, 10, 14, 18)}
@@ -150,10 +171,11 @@ def test_a_fist_must_be_above_the_shoulder(body, upright_hand):
     assert evidence(higher, body(right_wrist=(150, 70)))["fist_low"] == 0.0
 
 
-def test_an_open_palm_without_an_owner_speaks_for_itself(body, upright_hand):
+def test_an_open_palm_without_an_arm_speaks_for_itself(body, upright_hand):
     hand = upright_hand((148, 70))
     joints = {f"p{row}": (148, 56) for row in (6, 10, 14, 18)}
     palm = shaped(hand, **joints, **{f"p{row}": (148, 51) for row in (8, 12, 16, 20)})
     assert evidence(palm)["alone"] > 0.8
     assert evidence(palm, body(**UP))["alone"] == 0.0
+    assert evidence(palm, body(right_elbow=None, right_wrist=(148, 70)))["alone"] > 0.8
     assert evidence(replace(palm, score=[0.5]))["alone"] == pytest.approx(0.0)

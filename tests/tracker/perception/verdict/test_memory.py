@@ -44,6 +44,16 @@ def test_a_hand_is_remembered_for_a_second(upright_hand, images, is_known):
     assert np.isfinite(item.log_odds) == is_known
 
 
+def test_of_two_remembered_hands_it_is_the_one_that_was_seen_last(upright_hand):
+    memory = HandMemory()
+    twins = Hands.concatenate(upright_hand((100, 100)), upright_hand((112, 100)))
+    first, second = memory.recognize(0, twins)
+    assert memory.recognize(PERIOD_NS, upright_hand((108, 100))) == [second]
+    for number in range(2, 5):
+        (item,) = memory.recognize(number * PERIOD_NS, upright_hand((101, 100)))
+    assert item is second is not first
+
+
 def test_a_wave_is_told_from_a_still_hand_and_from_one_that_moves_on(upright_hand):
     to_and_fro = [100, 115, 100, 85, 100, 115, 100, 85]
     assert swing(upright_hand, to_and_fro) == 1.0
