@@ -33,6 +33,7 @@ class PictureClearer:
 
     def __init__(self) -> None:
         self._mean: np.ndarray | None = None
+        self.is_noisy = False
 
     def clear(self, bgr: ImageArray) -> ImageArray:
         """The picture as the models should see it, shape (height, width, 3), of the same shape.
@@ -43,7 +44,8 @@ class PictureClearer:
         noise_std = measure_noise(green)
         bright = _quantile(green[:: _STEP[0], :: _STEP[1]], 0.98)
         gain = min(LIGHT / max(bright, 1.0), GAIN_MAX) if bright < DARK else 1.0
-        if noise_std < NOISE_MIN:
+        self.is_noisy = noise_std >= NOISE_MIN
+        if not self.is_noisy:
             self._mean = None
             return bgr if gain == 1.0 else _brighten(bgr, gain)
         if self._mean is None or self._mean.shape != bgr.shape:

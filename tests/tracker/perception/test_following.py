@@ -3,6 +3,7 @@ import pytest
 
 from tracker.config import Config
 from tracker.containers import CameraImage
+from tracker.perception.clearing import NOISE_MIN, measure_noise
 from tracker.perception.following import (
     HandFollower,
     drop_known,
@@ -388,3 +389,20 @@ def test_followed_hands_and_hopeless_ones_are_not_read_again():
     world.score = 0.05
     follower.step(image(2), config, NOWHERE, None, regions_at((300, 200)))
     assert follower.work.hands == 1
+
+
+class Grainy(World):
+    """A reader that knows the hand in smoothed pictures alone."""
+
+    def read_beside(self, bgr, regions, calls):
+        self.score = 0.9 if measure_noise(bgr[:, :, 1]) < NOISE_MIN else 0.2
+        return super().read_beside(bgr, regions, calls)
+
+
+def test_a_followed_hand_is_read_once_more_smoothed_where_the_picture_is_noisy():
+    follower, config = follower_of(Grainy((300, 200))), Config()
+    follower.step(image(0), config)
+    grain = np.random.default_rng(5).normal(128.0, 12.0, (480, 640, 3))
+    noisy = CameraImage(1, "camera", grain.clip(0, 255).astype(np.uint8))
+    assert follower.step(noisy, config).score.tolist() == [0.9]
+    assert follower.work.hands == 2

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tracker.perception.verdict.fitting import fit_weights
+from tracker.evaluation.detection.verdict_fit import fit_weights
 from tracker.perception.verdict.weights import NAMES, WEIGHTS
 
 
