@@ -15,7 +15,7 @@ import numpy as np
 from tracker.containers import FloatArray, IntArray, Refusal
 
 #: The log-odds of a hand of which every quantity is 0.
-BIAS = -3.24
+BIAS = -3.27
 
 
 class Weight(NamedTuple):
@@ -37,29 +37,29 @@ class Weight(NamedTuple):
 
 
 WEIGHTS = {
-    "found": Weight(0.93, 0.0),
-    "score": Weight(0.49, 1.0, 10.0, Refusal.UNSURE),
-    "rise": Weight(1.32, 2.0, 10.0),
-    "lean": Weight(-1.19, -1.0, reason=Refusal.LEANS),
-    "spread": Weight(0.20, 0.4, 5.0),
-    "thumb": Weight(-3.01, -2.0),
-    "owned": Weight(0.24, 0.0),
-    "unowned": Weight(-0.44, -1.0, reason=Refusal.OWNER_UNKNOWN),
-    "alone": Weight(1.77, 2.0),
+    "found": Weight(0.92, 0.0),
+    "score": Weight(0.51, 1.0, 10.0, Refusal.UNSURE),
+    "rise": Weight(1.31, 2.0, 10.0),
+    "lean": Weight(-1.24, -1.0, reason=Refusal.LEANS),
+    "spread": Weight(0.21, 0.4, 5.0),
+    "thumb": Weight(-3.00, -2.0),
+    "owned": Weight(0.23, 0.0),
+    "unowned": Weight(-0.17, -1.0, reason=Refusal.OWNER_UNKNOWN),
+    "alone": Weight(1.82, 2.0),
     "low": Weight(-4.33, -3.0, reason=Refusal.BELOW_SHOULDERS),
     "palm_low": Weight(-2.16, -2.0, 5.0, Refusal.BELOW_SHOULDERS),
-    "high": Weight(3.74, 3.0),
-    "fist_low": Weight(-1.26, -2.0, reason=Refusal.BELOW_SHOULDERS),
-    "overhead": Weight(1.42, 2.0),
-    "forearm": Weight(3.93, 2.0, reason=Refusal.ARM_DOWN),
-    "head": Weight(-5.70, -3.0, reason=Refusal.AT_HEAD),
-    "palm_on_head": Weight(-3.96, -3.0, reason=Refusal.AT_HEAD),
-    "inside": Weight(-2.20, -2.0, reason=Refusal.BEFORE_BODY),
-    "together": Weight(-2.03, -2.0, 10.0, Refusal.BEFORE_BODY),
-    "doubt": Weight(-1.30, -0.5, reason=Refusal.OWNER_UNKNOWN),
-    "faint": Weight(-4.65, -4.0, reason=Refusal.OWNER_UNKNOWN),
+    "high": Weight(3.81, 3.0),
+    "fist_low": Weight(-1.24, -2.0, reason=Refusal.BELOW_SHOULDERS),
+    "overhead": Weight(1.44, 2.0),
+    "forearm": Weight(3.95, 2.0, reason=Refusal.ARM_DOWN),
+    "head": Weight(-5.72, -3.0, reason=Refusal.AT_HEAD),
+    "palm_on_head": Weight(-3.97, -3.0, reason=Refusal.AT_HEAD),
+    "inside": Weight(-2.23, -2.0, reason=Refusal.BEFORE_BODY),
+    "together": Weight(-2.02, -2.0, 10.0, Refusal.BEFORE_BODY),
+    "doubt": Weight(-1.15, -0.5, reason=Refusal.OWNER_UNKNOWN),
+    "faint": Weight(-4.68, -4.0, reason=Refusal.OWNER_UNKNOWN),
     "apart": Weight(-1.03, -1.0, 10.0, Refusal.OWNER_UNKNOWN),
-    "swing": Weight(3.00, 3.0, 10.0),
+    "swing": Weight(3.01, 3.0, 10.0),
 }
 #: The names of the quantities, in the order of the columns.
 NAMES = tuple(WEIGHTS)
