@@ -36,11 +36,14 @@ class PersonClusters:
         xy_m: Shape (C, 2): supposed middle of the body, in the fixed frame.
         width_m: Shape (C,): from the first to the last point.
         legs: Shape (C,), int64: segments it was put together from.
+        furniture_log_odds: Shape (C,): natural logarithm of how much likelier furniture is than a
+            person, by what is known of the place; 0 where nothing is.
     """
 
     xy_m: FloatArray
     width_m: FloatArray
     legs: IntArray
+    furniture_log_odds: FloatArray
 
     def __len__(self) -> int:
         return len(self.xy_m)
@@ -53,7 +56,9 @@ class PersonClusters:
     @staticmethod
     def none() -> PersonClusters:
         """Nobody."""
-        return PersonClusters(np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=np.int64))
+        return PersonClusters(
+            np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros(0)
+        )
 
 
 def find_people(
@@ -123,4 +128,5 @@ def _pair_legs(centers: FloatArray, width: FloatArray) -> PersonClusters:
     keep = (partner < 0) | (partner > np.arange(count))
     xy = np.where((partner >= 0)[:, None], (centers + centers[partner]) / 2, centers)
     total = np.where(partner >= 0, width + distance[np.arange(count), partner], width)
-    return PersonClusters(xy[keep], total[keep], np.where(partner >= 0, 2, 1)[keep])
+    legs_of = np.where(partner >= 0, 2, 1)
+    return PersonClusters(xy[keep], total[keep], legs_of[keep], np.zeros(np.count_nonzero(keep)))

@@ -114,6 +114,7 @@ def test_memory_is_bounded(cast):
     rng = np.random.default_rng(1)
     for _ in range(20):
         legs = np.full(200, 2)
-        people = PersonClusters(rng.uniform(-7.0, 7.0, (200, 2)), np.full(200, 0.3), legs)
+        places = rng.uniform(-7.0, 7.0, (200, 2))
+        people = PersonClusters(places, np.full(200, 0.3), legs, np.zeros(200))
         background.observe(cast([]), people, AFTER_S)
     assert len(background._places) <= 512

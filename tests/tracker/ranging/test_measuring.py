@@ -153,7 +153,8 @@ def test_the_scan_s_covariance_is_round_whatever_the_range(cast, legs):
 
 def clusters_at(points):
     count = len(points)
-    return PersonClusters(np.array(points, float), np.full(count, 0.3), np.full(count, 2))
+    xy_m = np.array(points, float)
+    return PersonClusters(xy_m, np.full(count, 0.3), np.full(count, 2), np.zeros(count))
 
 
 def still_background(scan, *points):
