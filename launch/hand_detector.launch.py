@@ -22,6 +22,7 @@ TOPICS = {
     "image_topic": ("image_raw", "camera images (with image_transport:=compressed, too)"),
     "scan_topic": ("scan", "LiDAR scans"),
     "camera_info_topic": ("camera_info", "camera intrinsics"),
+    "map_topic": ("map", "the map of the room"),
     "hand_raised_topic": ("hand_raised", "whether a hand is up"),
     "customer_pose_topic": ("customer_pose", "the selected customer"),
     "approach_pose_topic": ("~/approach_pose", "where to stand in front of that customer"),

@@ -45,7 +45,13 @@ _STAGES = ("search", "new_hands")
 OK, WARN, ERROR = 0, 1, 2
 
 #: The inputs that are told apart, and how bad it is to miss them.
-_WATCHED = {Input.IMAGES: ERROR, Input.SCAN: WARN, Input.TRANSFORMS: WARN, Input.CAMERA_INFO: OK}
+_WATCHED = {
+    Input.IMAGES: ERROR,
+    Input.SCAN: WARN,
+    Input.TRANSFORMS: WARN,
+    Input.CAMERA_INFO: OK,
+    Input.MAP: OK,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,6 +224,13 @@ class Diagnostics:
                 if note.kind in (NoteKind.CAMERA_INFO_REFUSED, NoteKind.PRINCIPAL_POINT_OFF):
                     return WARN, note.text
             words = "missing: camera_fx, camera_fy, camera_cx and camera_cy serve"
+            return OK, "has come" if seen.count else words
+        if item is Input.MAP:  # latched: it comes once
+            notes = self._last.notes if self._last is not None else ()
+            for note in notes:
+                if note.kind is NoteKind.MAP_NOT_LOCATED:
+                    return WARN, note.text
+            words = "missing: furniture is told from people by the scan alone"
             return OK, "has come" if seen.count else words
         if item is Input.TRANSFORMS:
             located_ns = self._located_ns

@@ -28,11 +28,12 @@ class Delivery(NamedTuple):
 
 
 #: Messages kept for each input, in the order the worker takes them: static transforms come in as
-#: many pieces as a robot has links; 2000 moving ones are 10 s at 200 Hz; intrinsics come with each
-#: image.
+#: many pieces as a robot has links; 2000 moving ones are 10 s at 200 Hz; the newest map counts;
+#: intrinsics come with each image.
 _KEPT = {
     Input.STATIC_TRANSFORMS: 500,
     Input.TRANSFORMS: 2000,
+    Input.MAP: 1,
     Input.CAMERA_INFO: 40,
     Input.SCAN: 40,
 }

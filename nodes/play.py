@@ -19,7 +19,7 @@ from nodes.qos import PROFILES, Profile
 from nodes.topics import Input
 from tracker.camera import CameraModel
 from tracker.closing import Closing
-from tracker.containers import CameraImage, Scan
+from tracker.containers import CameraImage, OccupancyGrid, Scan
 from tracker.errors import ConfigError, RecordingError
 from tracker.messages import CameraInfo, Encodable, Event, encode, types
 from tracker.messages.types import build, serialize, typestore
@@ -160,7 +160,8 @@ class _Tape(Closing):
 
     def profile(self, topic: str) -> Profile:
         """As it was offered when it was recorded, or as is its custom."""
-        custom = PROFILES[Input.STATIC_TRANSFORMS] if topic == "/tf_static" else DEFAULT
+        latched = {"/tf_static": Input.STATIC_TRANSFORMS, "/map": Input.MAP}
+        custom = PROFILES[latched[topic]] if topic in latched else DEFAULT
         offered = self._offered.get(topic, custom)
         is_sensor = self.types[topic] in _SENSOR_TYPES
         return offered._replace(reliable=False) if self._best_effort and is_sensor else offered
@@ -266,6 +267,8 @@ def _said(
             return topics.scan, event
         case StampedTransform():
             return topics.tf_static if event.is_static else topics.tf, event
+        case OccupancyGrid():
+            return topics.map, event
         case CameraModel() if size is not None:  # it does not know its frame
             width, height, frame_id = size
             of = (event.width or width, event.height or height)
@@ -279,6 +282,7 @@ def _said_types(recording: Recording) -> dict[str, str]:
         topics.image: (recording.has_images, types.IMAGE),
         topics.scan: (recording.has_scans, types.LASER_SCAN),
         topics.camera_info: (recording.has_camera_info, types.CAMERA_INFO),
+        topics.map: (recording.has_map, types.OCCUPANCY_GRID),
         topics.tf: (recording.has_transforms, types.TF_MESSAGE),
         topics.tf_static: (recording.has_transforms, types.TF_MESSAGE),
     }

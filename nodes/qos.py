@@ -39,6 +39,9 @@ PROFILES: dict[Input | Output, Profile] = {
     Input.CAMERA_INFO: Profile(
         False, False, 5, "Comes with each image, as the image does.",
     ),
+    Input.MAP: Profile(
+        True, True, 1, "Latched by map_server and SLAM: it comes once, before this node mostly.",
+    ),
     Input.TRANSFORMS: Profile(
         True, False, 100, "What tf2's own listener asks for: a lost transform delays images.",
     ),

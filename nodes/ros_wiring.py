@@ -12,6 +12,7 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import OccupancyGrid
 from rclpy.clock import Clock, ClockType, JumpThreshold, TimeJump
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -49,6 +50,7 @@ _CLASSES = {
     f"{package}/msg/{kind.__name__}": kind
     for package, kinds in {
         "sensor_msgs": (Image, CompressedImage, LaserScan, CameraInfo),
+        "nav_msgs": (OccupancyGrid,),
         "tf2_msgs": (TFMessage,),
         "std_msgs": (Bool,),
         "geometry_msgs": (PoseStamped,),

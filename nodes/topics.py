@@ -19,6 +19,7 @@ class Input(str, Enum):
     TRANSFORMS = "transforms"
     STATIC_TRANSFORMS = "static transforms"
     CAMERA_INFO = "camera_info"
+    MAP = "map"
 
 
 class Output(str, Enum):
@@ -49,6 +50,7 @@ IMAGE_TOPICS = {
 INPUT_TOPICS = {
     Input.SCAN: InputTopic("scan", types.LASER_SCAN),
     Input.CAMERA_INFO: InputTopic("camera_info", types.CAMERA_INFO),
+    Input.MAP: InputTopic("map", types.OCCUPANCY_GRID),
     Input.TRANSFORMS: InputTopic("/tf", types.TF_MESSAGE),
     Input.STATIC_TRANSFORMS: InputTopic("/tf_static", types.TF_MESSAGE),
 }

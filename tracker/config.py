@@ -307,6 +307,11 @@ class Config(BaseModel):
         "furniture and sustains nobody, until the place is seen free; 0 learns no furniture.",
         unit="s", group="ranging", live=True, ge=0.0, le=3600.0,
     )  # fmt: skip
+    use_map: bool = _parameter(
+        True, "Where a map (nav_msgs/OccupancyGrid) says that something stands, what is "
+        "person-sized in the scan is taken for furniture.",
+        group="ranging", live=True,
+    )  # fmt: skip
     range_std_m: float = _parameter(
         0.08, "Range noise of a person in the scan: the scanner's own, and legs are no point.",
         unit="m", group="ranging", live=True, ge=0.001, le=2.0,

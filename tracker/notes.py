@@ -22,6 +22,7 @@ class NoteKind(Enum):
     SCAN_IN_DEGREES = "scan in degrees"
     SCAN_THINNED = "scan thinned"
     LASER_MOUNTING_UNKNOWN = "laser mounting unknown"
+    MAP_NOT_LOCATED = "map not located"
     CAMERA_INFO_REFUSED = "CameraInfo refused"
     PICTURE_SIZE_CHANGED = "picture size changed"
     INTRINSICS_SCALED = "intrinsics scaled"
@@ -58,6 +59,7 @@ _REMARKS = frozenset(
         NoteKind.SCAN_IN_DEGREES,
         NoteKind.SCAN_THINNED,
         NoteKind.LASER_MOUNTING_UNKNOWN,
+        NoteKind.MAP_NOT_LOCATED,
         NoteKind.INTRINSICS_SCALED,
         NoteKind.PICTURE_SIZE_CHANGED,
         NoteKind.PRINCIPAL_POINT_OFF,

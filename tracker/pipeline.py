@@ -15,9 +15,9 @@ import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import CameraImage, FrameResult, LocatedScan, Scan
+from tracker.containers import CameraImage, FrameResult, LocatedScan, OccupancyGrid, Scan
 from tracker.geometry import RigidTransform
-from tracker.locating import CameraLocator, CameraPlace, choose_scan
+from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan
 from tracker.notes import Note, NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.perception.upright import Turn, upright_turn
@@ -46,8 +46,8 @@ _FORGOTTEN_NS = 60_000_000_000
 class Pipeline:
     """From sensor data to customers.
 
-    Push data with `add_transform`, `add_scan`, `set_camera` and `add_image`, then take finished
-    frames from `advance`. Or call `process` for one image at once.
+    Push data with `add_transform`, `add_scan`, `set_camera`, `set_map` and `add_image`, then take
+    finished frames from `advance`. Or call `process` for one image at once.
 
     Args:
         config: Every parameter.
@@ -81,6 +81,7 @@ class Pipeline:
         self._background = Background()
         self._last_stamp_ns: int | None = None
         self._camera_locator = CameraLocator()
+        self._map_locator = MapLocator()
         self._turn = Turn()
         self._size: tuple[int, int] | None = None
         self._notes: list[Note] = []
@@ -92,7 +93,7 @@ class Pipeline:
         return self.room.transforms
 
     def add(self, event: Event, now_ns: int | None = None) -> Verdict | None:
-        """Take in whatever a sensor sends: an image, a scan, a transform or intrinsics.
+        """Take in whatever comes: an image, a scan, a transform, intrinsics or a map.
 
         Args:
             event: What came; the truth of a simulation is left alone.
@@ -113,6 +114,8 @@ class Pipeline:
             self.add_transform(event)
         elif isinstance(event, CameraModel):
             self.set_camera(event)
+        elif isinstance(event, OccupancyGrid):
+            self.set_map(event)
         return None
 
     def add_transform(self, sample: StampedTransform) -> None:
@@ -133,6 +136,10 @@ class Pipeline:
         """Take in calibrated intrinsics, unless `use_camera_info` is off."""
         if self.config.use_camera_info:
             self._cameras.calibrate(camera)
+
+    def set_map(self, grid: OccupancyGrid) -> None:
+        """Take in a map of the room, in place of the one before."""
+        self._map_locator.set_map(grid)
 
     def add_image(self, image: CameraImage, now_ns: int | None = None) -> Verdict:
         """Queue an image, if its stamp makes sense and it is its turn at `processing_rate`.
@@ -203,7 +210,11 @@ class Pipeline:
             self.config,
         )
         self._notes += scan_notes
-        people = scan_people(scan, self.config)
+        room, map_notes = self._map_locator.locate(
+            self.transforms, image.stamp_ns, place, self.config
+        )
+        self._notes += map_notes
+        people = scan_people(scan, self.config, room)
         piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
         self._turn_upright(fixed_from_camera)
         if piecewise is not None and place.is_located:
@@ -270,7 +281,7 @@ class Pipeline:
         self.detector.configure(config)
 
     def reset(self) -> None:
-        """Forget people, furniture, scans, moving transforms and waiting images."""
+        """Forget people, furniture that was learnt, scans, moving transforms, waiting images."""
         self._forget()
         self.room.reset()
         self._last_stamp_ns = None

@@ -7,13 +7,13 @@ Reads any recording, writes `output.mcap`, `tracks.csv`, `summary.json`, `overvi
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FrameResult, Scan, Truth
+from tracker.containers import CameraImage, FrameResult, OccupancyGrid, Scan, Truth
 from tracker.errors import ClockError, OutputError, RecordingError, TransformError
 from tracker.evaluation.metrics.episode_report import EpisodeReport
 from tracker.evaluation.metrics.episodes import EpisodeEvaluation
@@ -66,6 +66,7 @@ def replay(
     *,
     topics: Topics | None = None,
     stamps: str = "header",
+    room_map: OccupancyGrid | None = None,
     detector: HandDetector | None = None,
     progress: Progress | None = None,
     watch: Watch | None = None,
@@ -82,6 +83,7 @@ def replay(
         config: Every parameter.
         topics: Where in the recording the data are.
         stamps: "header" or "log": which of a message's times counts.
+        room_map: A map of the room, in place of what the recording holds.
         detector: Finds hands; by default MediaPipe's models.
         progress: Told how far it is.
         watch: Passed on to the tracker, as an `innovation_log.InnovationLog`.
@@ -130,7 +132,7 @@ def replay(
                     began_s = time.perf_counter()
 
             try:
-                for log_ns, event in recording.events():
+                for log_ns, event in _with_map(recording.events(), room_map):
                     if isinstance(event, Truth):
                         evaluation.add_truth(event)
                         has_truth = True
@@ -166,6 +168,19 @@ def replay(
             progress(1.0, history.frames_processed)
         files = tuple(path for path in replay_files(out) if path.exists())
         return Replay(history, summary, episodes, problems.lines(), remarks, files)
+
+
+def _with_map(
+    events: Iterator[tuple[int, Event]], room_map: OccupancyGrid | None
+) -> Iterator[tuple[int, Event]]:
+    """What the sensors said, with the user's own map, if there is one, in place of theirs."""
+    awaited = room_map
+    for log_ns, event in events:
+        if awaited is not None:
+            yield log_ns, awaited
+            awaited = None
+        if room_map is None or not isinstance(event, OccupancyGrid):
+            yield log_ns, event
 
 
 def _feed(pipeline: Pipeline, event: Event, log_ns: int, problems: Problems) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import TracebackType
 
 from tracker.config import NODE_NAME, Config
-from tracker.containers import CameraImage, FrameResult, ImageArray, Scan
+from tracker.containers import CameraImage, FrameResult, ImageArray, OccupancyGrid, Scan
 from tracker.messages import encode, encode_markers
 from tracker.recording import RecordingWriter
 from tracker.report.birdseye import draw_birdseye
@@ -59,12 +59,14 @@ class ReplayOutputs:
         self._stack.__exit__(kind, error, traceback)
 
     def copy(self, log_ns: int, event: object) -> None:
-        """Pass scans and transforms on, so that the output can be looked at on its own."""
+        """Pass scans, transforms and maps on, so that the output can be looked at on its own."""
         if isinstance(event, Scan):
             self._recording.write("/scan", log_ns, event)
         elif isinstance(event, StampedTransform):
             topic = "/tf_static" if event.is_static else "/tf"
             self._recording.write(topic, log_ns, event)
+        elif isinstance(event, OccupancyGrid):
+            self._recording.write("/map", log_ns, event)
 
     def write(self, image: CameraImage, result: FrameResult) -> None:
         """Publish one processed image as the node would: the pose before the Bool."""

@@ -1,7 +1,10 @@
+import numpy as np
+
 from nodes.link import Link
 from nodes.topics import Input, Output
 from tracker import Config
 from tracker.camera import CameraModel
+from tracker.containers import OccupancyGrid
 from tracker.messages import CameraInfo, encode
 
 START_NS = 1_000_000_000_000
@@ -131,6 +134,34 @@ def test_intrinsics_that_do_not_fit_the_picture_are_told_by_both_sizes(wire):
     assert status.level == WARN
     assert "640x360" in status.message
     assert "64x48" in status.message
+
+
+def test_a_map_is_not_missed_and_said_once_it_has_come(wire):
+    assert wire.diagnose()["map"].level == OK
+    assert wire.diagnose()["map"].message.startswith("missing: furniture")
+    grid = OccupancyGrid(START_NS, "map", 0.05, (0.0, 0.0, 0.0), np.zeros((4, 4), np.int8))
+    wire.core.receive(Input.MAP, encode(grid))
+    wire.settle()
+    assert (wire.diagnose()["map"].level, wire.diagnose()["map"].message) == (OK, "has come")
+
+
+def test_a_map_that_no_transform_places_is_told(wire):
+    grid = OccupancyGrid(START_NS, "floor", 0.05, (0.0, 0.0, 0.0), np.zeros((4, 4), np.int8))
+    wire.core.receive(Input.MAP, encode(grid))
+    wire.mounting()
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 1)
+    wire.image(START_NS)
+    wire.settle()
+    assert wire.diagnose()["map"].level == WARN
+    assert "map unused" in wire.diagnose()["map"].message
+
+
+def test_a_map_that_makes_no_sense_is_counted_as_malformed(wire):
+    grid = OccupancyGrid(START_NS, "map", 0.05, (0.0, 0.0, 0.0), np.zeros((4, 4), np.int8))
+    wire.core.receive(Input.MAP, encode(grid)._replace(cdr=encode(grid).cdr[:-4]))
+    wire.settle()
+    assert wire.diagnose()["map"].values["malformed"] == "1"
 
 
 def test_a_picture_that_claims_too_many_pixels_is_counted_as_malformed(make_wire):

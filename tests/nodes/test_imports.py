@@ -13,6 +13,7 @@ SHARED = (
 WIRES = {
     "rclpy", "tf2_ros", "cyclonedds", "sensor_msgs", "std_msgs", "std_srvs", "geometry_msgs",
     "vision_msgs", "visualization_msgs", "diagnostic_msgs", "rcl_interfaces", "tf2_msgs",
+    "nav_msgs",
 }  # fmt: skip
 
 

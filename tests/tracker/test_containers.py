@@ -13,6 +13,7 @@ from tracker.containers import (
     CameraImage,
     Hands,
     Measurements,
+    OccupancyGrid,
     Pose,
     Scan,
     SensorKind,
@@ -113,6 +114,32 @@ def test_a_scan_without_beams_is_fine():
 def test_a_scan_whose_numbers_make_no_sense_is_refused(changes):
     with pytest.raises(ShapeError):
         scan(**({"ranges_m": [1.0, 2.0]} | changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"cells": np.zeros((0, 3), np.int8)}, "(0, 3)"),
+        ({"cells": np.zeros(3, np.int8)}, "(3,)"),
+        ({"cells": np.full((2, 2), 101, np.int8)}, "101"),
+        ({"cells": np.full((2, 2), -2, np.int8)}, "-2"),
+        ({"resolution_m": 0.0}, "resolution of 0.0"),
+        ({"resolution_m": float("nan")}, "resolution of nan"),
+        ({"origin": (0.0, float("inf"), 0.0)}, "inf"),
+    ],
+    ids=["no cells", "one row", "above 100", "below -1", "no size", "nan", "far away"],
+)
+def test_a_map_that_makes_no_sense_is_refused(changes, words):
+    whole = {
+        "stamp_ns": 0,
+        "frame_id": "map",
+        "resolution_m": 0.05,
+        "origin": (0.0, 0.0, 0.0),
+        "cells": np.zeros((2, 2), np.int8),
+    }
+    with pytest.raises(ShapeError) as caught:
+        OccupancyGrid(**(whole | changes))
+    assert words in str(caught.value)
 
 
 def test_arrays_that_disagree_are_refused_with_every_shape():

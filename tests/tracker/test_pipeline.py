@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from tracker import CameraImage, Config, Hands, Pipeline, Scan
 from tracker.camera import CameraModel
+from tracker.containers import OccupancyGrid
 from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.notes import Note, NoteKind
 from tracker.transforms import StampedTransform
@@ -334,6 +335,57 @@ def test_furniture_is_not_learnt_where_that_is_switched_off():
     pipeline.add_transform(static("map", "laser"))
     room = lambda stamp: circles_scan(stamp, (2.0, 1.0))  # noqa: E731
     assert len(play(pipeline, 400, scan=room)[-1].measurements) == 1
+
+
+def map_with_post(x, y, frame_id="map"):
+    """4 m x 4 m around the origin in cells of 5 cm, one of them occupied."""
+    cells = np.zeros((160, 160), np.int8)
+    cells[int((y + 4.0) / 0.05), int((x + 4.0) / 0.05)] = 100
+    return OccupancyGrid(0, frame_id, 0.05, (-4.0, -4.0, 0.0), cells)
+
+
+def people_beside(pipeline, stamp_ns=START_NS):
+    """How many the scan shows beside the hands, of a post of 12 cm at (2, .5)."""
+    pipeline.add_scan(person_scan(stamp_ns, y=0.5, radius=0.06))
+    result = pipeline.process(image_at(stamp_ns))
+    return len(result.measurements), [note.kind for note in result.notes]
+
+
+def pipeline_at_origin(config=None):
+    pipeline = Pipeline(config or Config(), SeenHands())
+    for child in ("camera_link", "laser"):
+        pipeline.add_transform(static("map", child))
+    return pipeline
+
+
+def test_what_stands_on_an_occupied_cell_of_the_map_is_nobody():
+    pipeline = pipeline_at_origin()
+    assert people_beside(pipeline)[0] == 1
+    pipeline.add(map_with_post(2.0, 0.5))
+    assert people_beside(pipeline, START_NS + PERIOD_NS) == (0, [])
+    pipeline.add(map_with_post(1.0, 0.5))  # a newer map in its place
+    assert people_beside(pipeline, START_NS + 2 * PERIOD_NS) == (1, [])
+
+
+def test_the_map_stays_when_everything_else_is_forgotten():
+    pipeline = pipeline_at_origin()
+    pipeline.add(map_with_post(2.0, 0.5))
+    pipeline.reset()
+    assert people_beside(pipeline)[0] == 0
+
+
+def test_a_map_that_is_not_wanted_changes_nothing():
+    pipeline = pipeline_at_origin(Config(use_map=False))
+    pipeline.add(map_with_post(2.0, 0.5))
+    assert people_beside(pipeline)[0] == 1
+
+
+def test_a_map_of_another_frame_is_placed_by_its_transform_and_missed_without():
+    pipeline = pipeline_at_origin()
+    pipeline.add(map_with_post(1.0, -0.5, frame_id="/floor"))
+    assert people_beside(pipeline) == (1, [NoteKind.MAP_NOT_LOCATED])
+    pipeline.add_transform(static("floor", "map", RigidTransform((-1.0, -1.0, 0.0))))
+    assert people_beside(pipeline, START_NS + PERIOD_NS) == (0, [])
 
 
 def test_a_customer_who_stands_still_with_the_hand_down_is_no_furniture():

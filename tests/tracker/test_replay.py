@@ -9,12 +9,14 @@ import pytest
 
 from tracker import CameraImage, Config, Scan
 from tracker.camera import CameraModel
+from tracker.containers import OccupancyGrid
 from tracker.errors import ConfigError, RecordingError
 from tracker.geometry import RigidTransform
 from tracker.messages import CameraInfo
 from tracker.outputs import FolderLock
 from tracker.recording import RecordingWriter, open_recording
 from tracker.replay import replay
+from tracker.simulation import topic_of
 from tracker.transforms import StampedTransform
 
 AT_ORIGIN = tuple(
@@ -64,6 +66,27 @@ def test_a_replay_leaves_a_recording_a_table_a_summary_a_picture_and_a_video(
     assert cv2.imread(str(tmp_path / "out/overview.png")) is not None
     video = cv2.VideoCapture(str(tmp_path / "out/debug.mp4"))
     assert sum(1 for _ in iter(lambda: video.read()[0], False)) == 20
+
+
+def map_of(cells):
+    return OccupancyGrid(START_NS, "map", 0.5, (-5.0, -5.0, 0.0), np.array(cells, np.int8))
+
+
+def test_a_map_comes_from_the_recording_or_from_the_user_who_wins(tmp_path, write_bag, hand_ahead):
+    free, taken = map_of(np.zeros((20, 20))), map_of(np.full((20, 20), 100))
+    seen = write_bag(tmp_path / "seen.mcap", 1.0)
+    with RecordingWriter(tmp_path / "in.mcap") as writer, open_recording(seen) as recording:
+        writer.write("/map", START_NS, free)
+        for log_ns, event in recording.events():
+            writer.write(topic_of(event), log_ns, event)
+    for own, expected in ((None, 0), (taken, 100)):
+        out = tmp_path / f"out{expected}"
+        result = replay(tmp_path / "in.mcap", out, detector=hand_ahead, room_map=own)
+        maps = [
+            item.data for topic, _, item in read_topics(out / "output.mcap") if topic == "/map"
+        ]
+        assert [int(data[0]) for data in maps] == [expected]
+        assert result.problems == ()
 
 
 def test_output_mcap_holds_the_topics_of_the_node_with_the_pose_before_the_bool(

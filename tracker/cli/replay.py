@@ -48,6 +48,11 @@ def replay_command(
     camera_info_topic: Annotated[str, typer.Option(help="Intrinsics.")] = "/camera_info",
     tf_topic: Annotated[str, typer.Option(help="Moving transforms.")] = "/tf",
     tf_static_topic: Annotated[str, typer.Option(help="Lasting transforms.")] = "/tf_static",
+    map_topic: Annotated[str, typer.Option(help="The map of the room.")] = "/map",
+    room_map: Annotated[
+        Path | None,
+        typer.Option("--map", help="map_server's YAML file, in place of the recording's map."),
+    ] = None,
     stamps: Annotated[
         str,
         typer.Option(help="Which time counts: `header` (the sensor's) or `log` (the recorder's)."),
@@ -66,7 +71,7 @@ def replay_command(
     Writes output.mcap (for Foxglove, RViz, ros2 bag play), tracks.csv, summary.json, overview.png
     and debug.mp4. A recording that breaks off is replayed as far as it goes, and the status is 1.
     """
-    from tracker.recording import Topics
+    from tracker.recording import Topics, load_map
     from tracker.replay import Watcher, replay
     from tracker.replay_outputs import replay_files
     from tracker.report.replay_page import ReplayReport
@@ -81,6 +86,7 @@ def replay_command(
     check_is_no_file("--out", out)
     check_is_no_folder("--report", report)
     check_is_no_folder("--save-view", save_view)
+    grid = None if room_map is None else load_map(room_map)
     check_inputs_stay(
         [source, *parameter_files(config, parameters)], [*replay_files(out), report, save_view]
     )
@@ -94,6 +100,7 @@ def replay_command(
         camera_info=camera_info_topic,
         tf=tf_topic,
         tf_static=tf_static_topic,
+        map=map_topic,
     )
     viewer, said = None, ""
     with ExitStack() as stack:
@@ -110,6 +117,7 @@ def replay_command(
             parameters,
             topics=topics,
             stamps=stamps,
+            room_map=grid,
             progress=progress,
             watchers=watchers,
         )

@@ -14,6 +14,7 @@ from tracker.containers.arrays import (
 from tracker.containers.hands import Hands, Refusal
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
+from tracker.containers.occupancy_grid import OccupancyGrid
 from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
 from tracker.containers.sensor_kind import SensorKind
 from tracker.containers.sensors import CameraImage, Scan
@@ -30,6 +31,7 @@ __all__ = [
     "IntArray",
     "LocatedScan",
     "Measurements",
+    "OccupancyGrid",
     "PerceptionWork",
     "Pose",
     "Refusal",

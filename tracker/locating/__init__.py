@@ -1,6 +1,7 @@
-"""Where in the fixed frame are camera and laser, at the stamps of their own data?"""
+"""Where in the fixed frame are camera, laser and map, at the stamps of the data?"""
 
 from tracker.locating.camera import CameraLocator, CameraPlace
+from tracker.locating.room_map import MapLocator
 from tracker.locating.scan import choose_scan
 
-__all__ = ["CameraLocator", "CameraPlace", "choose_scan"]
+__all__ = ["CameraLocator", "CameraPlace", "MapLocator", "choose_scan"]

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from tracker.camera import CameraModel, Pinhole, Sensor
-from tracker.containers import CameraImage, Scan, Truth
+from tracker.containers import CameraImage, OccupancyGrid, Scan, Truth
 from tracker.errors import ConfigError, RecordingError, ShapeError
 from tracker.geometry import RigidTransform
 from tracker.messages import types
@@ -17,7 +17,7 @@ from tracker.messages.picture_size import MAX_PIXELS
 from tracker.transforms import StampedTransform
 
 #: What sensors, and simulations, say.
-Event: TypeAlias = CameraImage | Scan | StampedTransform | CameraModel | Truth
+Event: TypeAlias = CameraImage | Scan | StampedTransform | CameraModel | OccupancyGrid | Truth
 
 
 def decode(
@@ -40,7 +40,7 @@ def decode(
 
     Raises:
         RecordingError: The type is not decodable, or the bytes are no such message.
-        ShapeError: A scan makes no sense.
+        ShapeError: A scan or a map makes no sense.
         ClockError: A stamp is negative.
         ConfigError: Camera intrinsics make no sense.
     """
@@ -140,6 +140,29 @@ def camera_from_message(message: Any) -> CameraModel:
     )
 
 
+def map_from_message(message: Any) -> OccupancyGrid:
+    """The map of a nav_msgs/OccupancyGrid.
+
+    Raises:
+        ShapeError: It has another number of cells than it says, or they make no sense.
+    """
+    info, at, turn = message.info, message.info.origin.position, message.info.origin.orientation
+    cells = np.array(message.data, dtype=np.int8)
+    rows, columns = int(info.height), int(info.width)
+    if len(cells) != rows * columns:
+        raise ShapeError(
+            f"A map says {columns}x{rows} cells and brings {len(cells)}; they must agree."
+        )
+    yaw_rad = RigidTransform(quaternion_xyzw=(turn.x, turn.y, turn.z, turn.w)).yaw_rad
+    return OccupancyGrid(
+        stamp_ns=stamp_ns(message.header),
+        frame_id=message.header.frame_id,
+        resolution_m=float(info.resolution),
+        origin=(float(at.x), float(at.y), yaw_rad),
+        cells=cells.reshape(rows, columns),
+    )
+
+
 def transforms_from_message(message: Any, *, is_static: bool = False) -> list[StampedTransform]:
     """The transforms of a tf2_msgs/TFMessage."""
     samples = []
@@ -209,6 +232,7 @@ _IMAGES: dict[str, Callable[[Any, int], Event]] = {
 _SINGLE: dict[str, Callable[[Any], Event]] = {
     types.LASER_SCAN: scan_from_message,
     types.CAMERA_INFO: camera_from_message,
+    types.OCCUPANCY_GRID: map_from_message,
     types.DETECTIONS: truth_from_message,
 }
 

@@ -10,8 +10,9 @@ import cv2
 import numpy as np
 
 from tracker.camera import CameraModel
-from tracker.containers import CameraImage, Pose, Scan, Tracks, Truth
+from tracker.containers import CameraImage, OccupancyGrid, Pose, Scan, Tracks, Truth
 from tracker.errors import RecordingError
+from tracker.geometry import euler_to_quaternion
 from tracker.messages import types
 from tracker.messages.types import Encoded, build, serialize
 from tracker.transforms import StampedTransform
@@ -45,6 +46,7 @@ Encodable: TypeAlias = (
     | StampedTransform
     | Iterable[StampedTransform]
     | CameraInfo
+    | OccupancyGrid
     | bool
     | Pose
     | Tracks
@@ -62,6 +64,7 @@ def encode(item: Encodable, *, frame_id: str = "map", jpeg_quality: int | None =
     | Scan | sensor_msgs/LaserScan |
     | StampedTransform, or several | tf2_msgs/TFMessage |
     | CameraInfo | sensor_msgs/CameraInfo |
+    | OccupancyGrid | nav_msgs/OccupancyGrid |
     | bool | std_msgs/Bool |
     | Pose | geometry_msgs/PoseStamped |
     | Tracks | vision_msgs/Detection3DArray: id, `hand_raised` or `hand_lowered`, existence |
@@ -123,6 +126,8 @@ def _message(item: Encodable, frame_id: str, jpeg_quality: int | None) -> Any:
             return _transforms([item])
         case CameraInfo():
             return _camera_info(item)
+        case OccupancyGrid():
+            return _map(item)
         case Pose():
             return build(
                 types.POSE_STAMPED,
@@ -212,6 +217,25 @@ def _camera_info(info: CameraInfo) -> Any:
         k=np.array([fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]),
         r=np.eye(3).reshape(-1),
         p=np.array([fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0]),
+    )
+
+
+def _map(grid: OccupancyGrid) -> Any:
+    rows, columns = grid.cells.shape
+    x_m, y_m, yaw_rad = grid.origin
+    stamped = header(grid.stamp_ns, grid.frame_id)
+    return build(
+        types.OCCUPANCY_GRID,
+        header=stamped,
+        info=build(
+            "nav_msgs/msg/MapMetaData",
+            map_load_time=stamped.stamp,
+            resolution=grid.resolution_m,
+            width=columns,
+            height=rows,
+            origin=ros_pose((x_m, y_m, 0.0), euler_to_quaternion(0.0, 0.0, yaw_rad)),
+        ),
+        data=grid.cells.reshape(-1),
     )
 
 

@@ -9,10 +9,12 @@ from tracker.ranging.measuring import measure_people, scan_people
 from tracker.ranging.odd_scans import mend_scan
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.rays import body_pose, hand_rays
+from tracker.ranging.room_map import RoomMap
 
 __all__ = [
     "Background",
     "PersonClusters",
+    "RoomMap",
     "beam_index",
     "bearing_span_rad",
     "body_pose",

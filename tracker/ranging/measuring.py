@@ -14,10 +14,14 @@ from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.person_range import owners
 from tracker.ranging.ray_range import range_along_rays
 from tracker.ranging.rays import HandRays, hand_rays
+from tracker.ranging.room_map import RoomMap
 
 #: A body so wide or near that its bearing could be any: that of an even spread over the circle.
 _BEARING_STD_MAX_RAD = float(np.pi / np.sqrt(3.0))
 _RANGE_MIN_M = 0.05
+#: What the map says to be furniture with more than these log-odds sustains nobody, and owns a hand
+#: only where nobody else fits it (guess).
+_MAPPED_LOG_ODDS = 2.0
 #: Numbers of picture pairs (`Measurements.person`) start here, above any cluster's row.
 _PAIR_OFFSET = 1_000_000
 
@@ -57,11 +61,11 @@ def measure_people(
     pair = np.where(pair >= 0, pair + _PAIR_OFFSET, -1)
     if people is None:
         people = scan_people(scan, config)
-    is_background = np.zeros(len(people), dtype=bool)
+    is_background = people.furniture_log_odds > _MAPPED_LOG_ODDS
     if background is not None and scan is not None:
         if sustain:
             background.observe(scan, people, config.background_after_s)
-        is_background = background.holds(people.xy_m)
+        is_background |= background.holds(people.xy_m)
     if config.ranging == "spec":
         claimed = np.full(len(hands), -1, dtype=np.int64)
         range_m = np.full(len(hands), np.nan)
@@ -98,7 +102,9 @@ def measure_people(
     return Measurements.concatenate(from_hands, from_scan)
 
 
-def scan_people(scan: LocatedScan | None, config: Config) -> PersonClusters:
+def scan_people(
+    scan: LocatedScan | None, config: Config, room: RoomMap | None = None
+) -> PersonClusters:
     """`find_people` by the configured lengths; nobody where there is no scan."""
     if scan is None:
         return PersonClusters.none()
@@ -108,6 +114,7 @@ def scan_people(scan: LocatedScan | None, config: Config) -> PersonClusters:
         leg_width_min_m=config.leg_width_min_m,
         body_width_m=config.body_width_m,
         range_max_m=config.person_range_max_m,
+        room=room,
     )
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray, LocatedScan
+from tracker.ranging.room_map import RoomMap
 from tracker.ranging.segments import Segments, find_segments
 
 #: A trouser leg is about 0.12 to 0.2 m across, and seldom less or more than this.
@@ -22,6 +23,8 @@ FLATNESS_MIN = 0.1
 LEG_WIDTH_MAX_M = 0.26
 #: Centers of the two legs of one person who walks are no farther apart than this.
 LEG_PAIR_DISTANCE_M = 0.45
+#: From these log-odds on something is a post when legs are paired: posts and legs are not (guess).
+_FURNITURE_LOG_ODDS = 1.0
 #: What the laser sees is the near skin; the middle of a leg lies about this far behind it.
 LEG_RADIUS_M = 0.06
 #: More person-sized things than this are noise; the nearest are kept.
@@ -68,6 +71,7 @@ def find_people(
     leg_width_min_m: float,
     body_width_m: float,
     range_max_m: float,
+    room: RoomMap | None = None,
 ) -> PersonClusters:
     """Find what could be a person at the height of the laser.
 
@@ -77,6 +81,7 @@ def find_people(
         leg_width_min_m: Thinner segments are no legs.
         body_width_m: Wider segments are background.
         range_max_m: Segments all of which is farther are left alone.
+        room: The map, for points of the fixed frame; None where there is none.
 
     Returns:
         The clusters, by angle around the laser.
@@ -92,7 +97,8 @@ def find_people(
     inward = LEG_RADIUS_M * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
     total = np.add.reduceat(scan.xy_m[found.rows] + inward, found.begins)
     middle = total[is_body] / found.beams[is_body, None]
-    return _pair_legs(middle, found.width_m[is_body])
+    log_odds = np.zeros(len(middle)) if room is None else room.furniture_log_odds(middle)
+    return _pair_legs(middle, found.width_m[is_body], log_odds)
 
 
 def _is_person_sized(found: Segments, leg_width_min_m: float, body_width_m: float) -> BoolArray:
@@ -113,12 +119,13 @@ def _farthest_m(range_m: FloatArray) -> float:
     return float(np.sort(range_m)[_SEGMENTS_MAX - 1]) if len(range_m) > _SEGMENTS_MAX else np.inf
 
 
-def _pair_legs(centers: FloatArray, width: FloatArray) -> PersonClusters:
-    """Join leg-sized segments two by two, the closest pairs first."""
+def _pair_legs(centers: FloatArray, width: FloatArray, log_odds: FloatArray) -> PersonClusters:
+    """Join leg-sized segments two by two, the closest pairs first; posts with posts alone."""
     count = len(centers)
-    legs = width <= LEG_WIDTH_MAX_M
+    legs, posts = width <= LEG_WIDTH_MAX_M, log_odds > _FURNITURE_LOG_ODDS
     distance = np.linalg.norm(centers[:, None] - centers[None], axis=-1)
     pairs = legs[:, None] & legs[None] & (distance <= LEG_PAIR_DISTANCE_M)
+    pairs &= posts[:, None] == posts[None]
     candidates = np.argwhere(np.triu(pairs, k=1))
     candidates = candidates[np.argsort(distance[tuple(candidates.T)], kind="stable")]
     partner = np.full(count, -1)
@@ -128,5 +135,7 @@ def _pair_legs(centers: FloatArray, width: FloatArray) -> PersonClusters:
     keep = (partner < 0) | (partner > np.arange(count))
     xy = np.where((partner >= 0)[:, None], (centers + centers[partner]) / 2, centers)
     total = np.where(partner >= 0, width + distance[np.arange(count), partner], width)
-    legs_of = np.where(partner >= 0, 2, 1)
-    return PersonClusters(xy[keep], total[keep], legs_of[keep], np.zeros(np.count_nonzero(keep)))
+    log_odds = np.where(partner >= 0, (log_odds + log_odds[partner]) / 2, log_odds)
+    return PersonClusters(
+        xy[keep], total[keep], np.where(partner >= 0, 2, 1)[keep], log_odds[keep]
+    )

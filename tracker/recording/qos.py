@@ -6,7 +6,7 @@ import yaml
 
 #: Topics that a late subscriber must still get, and how many of their last messages. /tf_static
 #: may come in many pieces; 100 is what tf2's own listener keeps.
-LATCHED = {"/tf_static": 100, "/hand_raised": 1}
+LATCHED = {"/tf_static": 100, "/hand_raised": 1, "/map": 1}
 
 # rmw's numbers: keep last, reliable, transient local or volatile, automatic.
 _KEEP_LAST, _RELIABLE, _TRANSIENT_LOCAL, _VOLATILE, _AUTOMATIC = 1, 1, 1, 2, 1

@@ -128,6 +128,11 @@ class Recording(Closing):
         return any(self._table.holds(name, *TRANSFORMS) for name in names)
 
     @property
+    def has_map(self) -> bool:
+        """A map of the room is on the map topic."""
+        return self._table.holds(self.read_topics.map, types.OCCUPANCY_GRID)
+
+    @property
     def has_truth(self) -> bool:
         """Simulated people are on the truth topic."""
         return self._table.holds(self.read_topics.truth, types.DETECTIONS)
@@ -232,13 +237,13 @@ class Recording(Closing):
 
     def _used(self) -> set[str]:
         names = self.read_topics
-        used = {names.image, names.scan, names.camera_info, names.tf, names.tf_static}
+        used = {names.image, names.scan, names.camera_info, names.tf, names.tf_static, names.map}
         used |= {names.truth} if self._with_truth else set()
         return {name for name in used if self._table.holds(name, *DECODABLE, *_PICTURES)}
 
     def _find_topics(self, asked: Topics) -> Topics:
         found = self._table.find(asked)
-        for name in ("image", "scan", "camera_info", "tf", "tf_static"):
+        for name in ("image", "scan", "camera_info", "tf", "tf_static", "map"):
             before, after = getattr(asked, name), getattr(found, name)
             if before != after:
                 self.notes.append(

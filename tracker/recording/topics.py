@@ -30,6 +30,7 @@ class Topics:
         camera_info: Intrinsics; where it is missing, the `camera_info` beside the image topic.
         tf: Moving transforms; where it is missing, the robot's own, as /robot1/tf.
         tf_static: Lasting transforms; likewise.
+        map: The map of the room; where it is missing and there is one other `map`, that one.
         truth: Simulated people.
     """
 
@@ -38,6 +39,7 @@ class Topics:
     camera_info: str = "/camera_info"
     tf: str = "/tf"
     tf_static: str = "/tf_static"
+    map: str = "/map"
     truth: str = "/truth/people"
 
 
@@ -72,6 +74,7 @@ class TopicTable:
             camera_info=self._find_camera_info(found.image, asked.camera_info),
             tf=self._find_transforms(asked.tf, found),
             tf_static=self._find_transforms(asked.tf_static, found),
+            map=self._find_map(asked.map),
         )
 
     def unread_scans(self, scan: str) -> str:
@@ -130,6 +133,10 @@ class TopicTable:
         beside = f"{image.rsplit('/', 1)[0]}/camera_info"
         is_there = asked not in self._topics and self.holds(beside, types.CAMERA_INFO)
         return beside if is_there else asked
+
+    def _find_map(self, asked: str) -> str:
+        maps = [name for name in self.of_type(types.OCCUPANCY_GRID) if name.endswith("/map")]
+        return maps[0] if asked not in self._topics and len(maps) == 1 else asked
 
     def _find_transforms(self, asked: str, others: Topics) -> str:
         """The topic of the same name in a namespace: the sensors' own, or the only one."""

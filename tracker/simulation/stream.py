@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from tracker.camera import CameraModel
-from tracker.containers import CameraImage, Scan, Truth
+from tracker.containers import CameraImage, OccupancyGrid, Scan, Truth
 from tracker.errors import SceneError
 from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.messages import CameraInfo, Encodable, Event
@@ -113,6 +113,7 @@ def topic_of(event: Event) -> str:
         CameraImage: "/image_raw",
         CameraModel: "/camera_info",
         Scan: "/scan",
+        OccupancyGrid: "/map",
         Truth: "/truth/people",
     }
     return topics[type(event)]

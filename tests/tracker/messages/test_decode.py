@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tracker.camera import CameraModel, Pinhole, Sensor
-from tracker.containers import CameraImage, Scan, Truth
+from tracker.containers import CameraImage, OccupancyGrid, Scan, Truth
 from tracker.errors import ClockError, ConfigError, RecordingError, ShapeError, TrackerError
 from tracker.geometry import RigidTransform
 from tracker.messages import CameraInfo, decode, encode, events_from_message
@@ -100,6 +100,14 @@ def test_a_scan_with_zero_increment_is_refused():
         decode(*serialize(build(SCAN, ranges=np.ones(3, dtype=np.float32))))
 
 
+def test_a_map_whose_size_and_cells_disagree_is_refused():
+    grid = OccupancyGrid(5, "map", 0.5, (0.0, 0.0, 0.0), np.zeros((3, 4), np.int8))
+    cdr = bytearray(encode(grid).cdr)
+    cdr[cdr.index(4, 20)] = 7  # the columns
+    with pytest.raises(ShapeError, match="7x3 cells and brings 12"):
+        decode("nav_msgs/msg/OccupancyGrid", bytes(cdr))
+
+
 def test_a_negative_stamp_is_refused():
     time = build("builtin_interfaces/msg/Time", sec=-1)
     message = build(SCAN, header=build("std_msgs/msg/Header", stamp=time))
@@ -140,6 +148,7 @@ def test_objects_of_rclpy_with_array_data_decode_like_bytes():
         Scan(5, "laser", 0.0, 0.1, 0.1, 9.0, np.ones(30)),
         StampedTransform(5, "map", "base", RigidTransform()),
         CameraInfo(5, "camera", 64, 48, CameraModel(50.0, 50.0, 32.0, 24.0)),
+        OccupancyGrid(5, "map", 0.5, (0.0, 0.0, 0.0), np.zeros((3, 3), np.int8)),
         Truth(5, [1], [[1.0, 2.0]], [True], [True]),
     ],
     ids=lambda item: type(item).__name__,

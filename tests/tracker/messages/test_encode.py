@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tracker.camera import CameraModel
-from tracker.containers import CameraImage, Hands, Pose, Scan, Tracks, Truth
+from tracker.containers import CameraImage, Hands, OccupancyGrid, Pose, Scan, Tracks, Truth
 from tracker.errors import RecordingError
 from tracker.geometry import RigidTransform
 from tracker.messages import CameraInfo, Encoded, decode, encode
@@ -161,6 +161,25 @@ def test_a_camera_without_distortion_gets_a_name_that_tools_know():
     pixels = np.array([[10.0, 20.0]])
     (back,) = decode(*encode(info))
     np.testing.assert_array_equal(back.undistort(pixels), pixels)
+
+
+def test_a_map_comes_back_exactly_but_for_its_resolution_in_single_precision():
+    cells = np.random.default_rng(2).integers(-1, 101, (3, 5)).astype(np.int8)
+    sent = OccupancyGrid(STAMP_NS, "map", 0.05, (-1.5, 2.5, 2.0), cells)
+    (grid,) = decode(*encode(sent))
+    assert (grid.stamp_ns, grid.frame_id) == (STAMP_NS, "map")
+    assert grid.resolution_m == pytest.approx(0.05, rel=1e-6)
+    assert grid.origin == pytest.approx((-1.5, 2.5, 2.0))
+    np.testing.assert_array_equal(grid.cells, cells)
+
+
+def test_a_map_has_the_bytes_of_ros():
+    golden = Cdr().header(STAMP_NS, "map")
+    golden.put("i", STAMP_NS // 10**9).put("I", STAMP_NS % 10**9)
+    golden.put("f", 0.25).put("I", 2, 1).put("d", 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    golden.put("I", 2).put("b", -1, 100)
+    grid = OccupancyGrid(STAMP_NS, "map", 0.25, (1.0, 2.0, 0.0), np.array([[-1, 100]], np.int8))
+    assert encode(grid) == ("nav_msgs/msg/OccupancyGrid", golden.bytes)
 
 
 def test_truth_comes_back_exactly():

@@ -2,10 +2,34 @@ import numpy as np
 import pytest
 
 from tracker import Scan
+from tracker.containers import OccupancyGrid
 from tracker.geometry import RigidTransform
-from tracker.ranging import find_people, locate_scan
+from tracker.ranging import RoomMap, find_people, locate_scan
 
 LIMITS = {"segment_jump_m": 0.15, "leg_width_min_m": 0.02, "body_width_m": 0.8, "range_max_m": 8.0}
+
+
+def room_with(*posts_m):
+    """A map of cells of 5 cm, occupied at these points."""
+    cells = np.zeros((160, 160), np.int8)
+    for x, y in posts_m:
+        cells[int((y + 4.0) / 0.05), int((x + 4.0) / 0.05)] = 100
+    return RoomMap.of(OccupancyGrid(0, "map", 0.05, (-4.0, -4.0, 0.0), cells))
+
+
+def test_a_leg_is_not_paired_with_a_post_of_the_map(cast):
+    scan = cast([(2.0, 0.0, 0.06), (2.0, 0.35, 0.07)])
+    (between,) = find_people(scan, **LIMITS).xy_m
+    assert between == pytest.approx((2.0, 0.175), abs=0.03)
+    people = find_people(scan, **LIMITS, room=room_with((2.0, 0.0)))
+    assert people.xy_m == pytest.approx(np.array([(2.0, 0.0), (2.0, 0.35)]), abs=0.03)
+    post, leg = people.furniture_log_odds
+    assert post > 2.0
+    assert leg < 0.0
+
+
+def test_without_a_map_nothing_is_known_of_furniture(cast, legs):
+    assert (find_people(cast(legs(2.0, 0.5)), **LIMITS).furniture_log_odds == 0.0).all()
 
 
 def test_two_legs_are_one_person_between_them(cast, legs):

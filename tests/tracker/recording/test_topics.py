@@ -94,6 +94,14 @@ def test_lasting_transforms_of_a_namespace_come_first(tmp_path, sensor_items):
     assert np.allclose(events[0].transform.translation_m, (0.2, 0.0, 0.3))
 
 
+def test_the_only_map_is_found_in_a_namespace_and_no_cost_map():
+    grid = "nav_msgs/msg/OccupancyGrid"
+    there = table(robot1__map=grid, local_costmap__costmap=grid)
+    assert there.find(Topics()).map == "/robot1/map"
+    assert table(map=grid, other__map=grid).find(Topics()).map == "/map"
+    assert table(a__map=grid, b__map=grid).find(Topics()).map == "/map"
+
+
 def test_a_topic_is_found_without_its_slash():
     there = table(eye__image=IMAGE, eye__scan=SCAN, laser__scan=SCAN)
     found = there.find(Topics(image="eye/image", scan="laser/scan"))
