@@ -126,6 +126,5 @@ def _reason(item: Any) -> str:
         return f"`{key}` is missing"
     if item["type"] == "value_error":
         return message.removeprefix("Value error, ")
-    return (
-        f"`{key}` is {shown(item['input'])}; allowed is {message.replace('Input should be ', '')}"
-    )
+    allowed = message.replace("Input should be ", "")
+    return f"`{key}` is {shown(item['input'])}; allowed is {allowed}"

@@ -14,7 +14,7 @@ from tracker.geometry import normalize_angle
 from tracker.simulation.arm import raised_hand_landmarks
 from tracker.simulation.canvas import Sprite
 from tracker.simulation.figure import paint_activity, paint_figure
-from tracker.simulation.furniture import TablePainter
+from tracker.simulation.furniture import ChairPainter, TablePainter
 from tracker.simulation.look import Look
 from tracker.simulation.motion import People
 from tracker.simulation.projection import NEAR_M, Viewpoint
@@ -28,6 +28,7 @@ SWING_STEPS = (-1.0, -0.6, 0.6, 1.0)
 
 _NOISE_MARGIN_PX = 96
 _SHARP_FROM_M = 0.55  # nearer figures are enlarged
+_SEAT_BEFORE_M = 0.05
 _BEHIND_RAD = np.radians(105.0)
 
 
@@ -48,6 +49,7 @@ class CameraView:
         self._px_per_m = scene.camera.fx / sharp_from_m
         self._room = RoomPainter(scene)
         self._tables = [TablePainter(table, scene.camera.exposure) for table in scene.tables]
+        self._chairs = [ChairPainter(chair, scene.camera.exposure) for chair in scene.chairs]
         self._looks = [look_of(person) for person in scene.people]
         self._figures: dict[tuple[Look, bool, str], list[_Pyramid]] = {}
         self._rng = rng
@@ -83,11 +85,18 @@ class CameraView:
     def _things(
         self, frame: ImageArray, view: Viewpoint, people: People
     ) -> list[tuple[float, Callable[[], None]]]:
-        """Distance ahead of each table and person, and what paints it."""
+        """Distance ahead of everything that stands in the room, and what paints it."""
         things: list[tuple[float, Callable[[], None]]] = []
         places = np.array([(table.x_m, table.y_m) for table in self._scene.tables]).reshape(-1, 2)
         for table, place in zip(self._tables, view.forward_left(places), strict=True):
             things.append((float(place[0]), partial(table.paint, frame, view)))
+        for chair in self._chairs:
+            ahead_m = float(view.forward_left(chair.xy_m)[0])
+            # Before somebody who sits on it, whose place is the same.
+            things.append((ahead_m + _SEAT_BEFORE_M, partial(chair.paint_seat, frame, view)))
+            if chair.back_xy_m is not None:
+                ahead_m = float(view.forward_left(chair.back_xy_m)[0])
+                things.append((ahead_m, partial(chair.paint_back, frame, view)))
         for row, look in enumerate(self._looks):
             ahead_left = view.forward_left(people.xy_m[row])
             if ahead_left[0] < max(NEAR_M, 0.3):
@@ -176,6 +185,7 @@ def look_of(person: Person) -> Look:
         spread=look.spread,
         raise_style=person.raise_style,
         lean_deg=person.lean_deg,
+        has_stool=person.stool,
         sign=person.sign,
     )
 

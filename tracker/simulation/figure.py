@@ -102,7 +102,7 @@ def _paint_legs(canvas: Canvas, look: Look) -> None:
         else:
             seat = look.seat_m
             canvas.paint([[(foot, 0.09, 0.045), (foot, seat, 0.06)]], look.trousers, 0.05)
-    if look.seat_m is not None:
+    if look.seat_m is not None and look.has_stool:
         stool = (58, 84, 116)
         canvas.paint([[(-0.19, look.seat_m - 0.03, 0.02), (0.19, look.seat_m - 0.03, 0.02)]],
                      stool, 0.02)  # fmt: skip

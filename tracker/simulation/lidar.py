@@ -6,18 +6,16 @@ import numpy as np
 
 from tracker.containers import FloatArray, Scan
 from tracker.geometry import RigidTransform
+from tracker.simulation.legs import chair_legs, table_posts
 from tracker.simulation.motion import People
-from tracker.simulation.scene import Scene, Table
-
-_POST_RADIUS_M = 0.03
-_PEDESTAL_RADIUS_M = 0.06
+from tracker.simulation.scene import Scene
 
 
 class ScanSimulator:
     """The scanner of one scene.
 
     Args:
-        scene: Its walls and table posts stand still.
+        scene: Its walls, tables and chairs stand still.
         rng: Range noise and drop-outs.
     """
 
@@ -28,7 +26,10 @@ class ScanSimulator:
         self._segments = np.array(
             [segment for wall in at_height for segment in wall.segments]
         ).reshape(-1, 4)
-        self._posts = np.array([post for table in scene.tables for post in table_posts(table)])
+        self._posts = np.array(
+            [post for table in scene.tables for post in table_posts(table)]
+            + [leg for chair in scene.chairs for leg in chair_legs(chair)]
+        ).reshape(-1, 3)
 
     def scan(self, stamp_ns: int, map_from_laser: RigidTransform, people: People) -> Scan:
         """One turn; all beams at one instant."""
@@ -37,7 +38,7 @@ class ScanSimulator:
         x, y, yaw = map_from_laser.planar
         first, step = np.radians(laser.first_beam_deg), np.radians(laser.step_deg)
         angles = first + step * np.arange(beams)
-        circles = np.concatenate([self._posts.reshape(-1, 3), people.legs.reshape(-1, 3)])
+        circles = np.concatenate([self._posts, people.legs.reshape(-1, 3)])
         ranges = cast_rays((x, y), yaw + angles, circles, self._segments)
         ranges = ranges + self._rng.normal(0.0, 1.0, beams) * laser.noise_m
         ranges[self._rng.random(beams) < laser.dropout] = np.inf
@@ -51,18 +52,6 @@ class ScanSimulator:
             laser.range_max_m,
             np.maximum(ranges, 0.0),
         )
-
-
-def table_posts(table: Table) -> FloatArray:
-    """Shape (1 or 4, 3): x_m, y_m, radius_m of a table's posts in the map."""
-    if table.posts == 1:
-        return np.array([[table.x_m, table.y_m, _PEDESTAL_RADIUS_M]])
-    along, across = table.length_m / 2 - 0.05, table.width_m / 2 - 0.05
-    own = np.array([[along, across], [along, -across], [-along, -across], [-along, across]])
-    yaw = np.radians(table.yaw_deg)
-    turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
-    places = own @ turn.T + (table.x_m, table.y_m)
-    return np.column_stack([places, np.full(4, _POST_RADIUS_M)])
 
 
 def cast_rays(

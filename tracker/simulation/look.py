@@ -30,6 +30,7 @@ class Look:
         spread: Of the fingers: 1 is wide apart, 0 is closed.
         raise_style: `beside` the head, `straight` up, or `low`, with the elbow at the side.
         lean_deg: How far the raised hand leans outward.
+        has_stool: Who sits is drawn on a stool.
         sign: What the raised hand shows: `palm`, `fist` or `finger`.
     """
 
@@ -47,6 +48,7 @@ class Look:
     spread: float = 1.0
     raise_style: str = "beside"
     lean_deg: float = 0.0
+    has_stool: bool = True
     sign: str = "palm"
 
     @property

@@ -9,13 +9,13 @@ import numpy as np
 from tracker.containers import BoolArray, FloatArray, IntArray
 from tracker.geometry import RigidTransform, normalize_angle
 from tracker.simulation.activities import moment_at
-from tracker.simulation.scene import ARM_MOTION_S, Person, Pose2, Scene
+from tracker.simulation.interior import Pose2
+from tracker.simulation.scene import ARM_MOTION_S, Person, Scene
 
 _STRIDE_M = 1.3  # two steps of a walking grown-up; a guess
 _SWING_M = 0.2
 _LEG_APART_M = 0.1
 _LEG_RADIUS_M = 0.07
-_SHIN_FORWARD_M = 0.1  # of somebody who sits
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +85,7 @@ def people_at(scene: Scene, time_s: float) -> People:
             waves[row] = np.sin(2.0 * np.pi * person.wave_hz * time_s)
         forward = np.array([np.cos(facing[row]), np.sin(facing[row])])
         left = np.array([-forward[1], forward[0]])
-        middle = xy[row] + (forward * _SHIN_FORWARD_M if person.seat_m is not None else 0.0)
+        middle = xy[row] + (forward * person.shins_m if person.seat_m is not None else 0.0)
         for leg, side in enumerate((1.0, -1.0)):
             place = middle + side * (_LEG_APART_M * left + swing * forward)
             legs[row, leg] = (*place, _LEG_RADIUS_M)

@@ -9,8 +9,10 @@ import cv2
 import numpy as np
 
 from tracker.containers import FloatArray, ImageArray
+from tracker.simulation.interior import Wall
+from tracker.simulation.poster import POSTER_PX_PER_M, paint_poster
 from tracker.simulation.projection import Viewpoint, clip_to_front
-from tracker.simulation.scene import Scene, Wall
+from tracker.simulation.scene import Scene
 
 _FLOOR_PX_PER_M = 48.0
 _WALL_PX_PER_M = 96.0
@@ -36,10 +38,11 @@ class RoomPainter:
         self._floor = _floor_texture(size, bgr(scene.floor))
         self._floor_color = bgr(scene.floor)
         # Each straight piece hangs its own pictures; the number of the piece picks them.
-        pieces = [(segment, wall) for wall in scene.walls for segment in wall.segments]
-        self._walls = [
-            _wall_face(segment, wall, number) for number, (segment, wall) in enumerate(pieces)
-        ]
+        pieces = [(wall, piece) for wall in scene.walls for piece in range(len(wall.segments))]
+        self._walls: list[_WallFace] = []
+        for number, (wall, piece) in enumerate(pieces):
+            face = _wall_face(wall.segments[piece], wall, number)
+            self._walls += [face, *_poster_faces(face, wall, piece)]
         self._last: tuple[Viewpoint, ImageArray] | None = None
 
     def paint(self, view: Viewpoint) -> ImageArray:
@@ -94,27 +97,30 @@ def bgr(color: str) -> tuple[int, int, int]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _WallFace:
-    """One straight piece of wall."""
+    """One straight piece of wall, or a poster on it."""
 
     ends: FloatArray  # shape (2, 2), in the map
-    height_m: float
+    top_m: float
     texture: ImageArray
     px_per_m: float
+    middle: FloatArray  # shape (2,), of the wall: what hangs on it is painted right after it
+    bottom_m: float = 0.0
 
     def distance_m(self, place: FloatArray) -> float:
-        return float(np.linalg.norm(self.ends.mean(axis=0) - place))
+        return float(np.linalg.norm(self.middle - place))
 
 
 def _paint_wall(frame: ImageArray, view: Viewpoint, face: _WallFace) -> None:
-    ends, height_m = view.forward_left(face.ends), face.height_m
+    ends, top_m = view.forward_left(face.ends), face.top_m
     visible = clip_to_front(ends, closed=False)
     if len(visible) < 2:
         return
-    outline = np.concatenate([view.pixels(visible, height_m), view.pixels(visible, 0.0)[::-1]])
+    lower = view.pixels(visible, face.bottom_m)
+    outline = np.concatenate([view.pixels(visible, top_m), lower[::-1]])
     first = max(int(np.floor(outline[:, 0].min())), 0)
     last = min(int(np.ceil(outline[:, 0].max())) + 1, view.camera.width)
     wall_from_texture = np.array(
-        [[1 / face.px_per_m, 0, 0], [0, -1 / face.px_per_m, height_m], [0, 0, 1]]
+        [[1 / face.px_per_m, 0, 0], [0, -1 / face.px_per_m, top_m], [0, 0, 1]]
     )
     top = max(int(np.floor(outline[:, 1].min())), 0)
     bottom = min(int(np.ceil(outline[:, 1].max())) + 1, view.camera.height)
@@ -173,4 +179,27 @@ def _wall_face(segment: tuple[float, float, float, float], wall: Wall, number: i
             rectangle(float(x) + 0.09, 1.47, 0.44, 0.28, hue)
             rectangle(float(x) + 0.09, 1.47, 0.44, 0.11, tuple(int(v * 0.7) for v in hue))
     lit = np.clip(texture * light, 0, 255).astype(np.uint8)
-    return _WallFace(np.reshape(segment, (2, 2)), height, lit, px_per_m)
+    ends = np.reshape(segment, (2, 2))
+    return _WallFace(ends, height, lit, px_per_m, ends.mean(axis=0))
+
+
+def _poster_faces(face: _WallFace, wall: Wall, piece: int) -> list[_WallFace]:
+    along = face.ends[1] - face.ends[0]
+    along = along / np.linalg.norm(along)
+    faces = []
+    for poster in wall.posters:
+        if poster.piece == piece:
+            # From the far end to the near one: to be read from within a room whose corners go
+            # counter-clockwise.
+            from_first = poster.at_m + poster.width_m / 2 * np.array([[1.0], [-1.0]])
+            faces.append(
+                _WallFace(
+                    face.ends[0] + from_first * along,
+                    poster.z_m + poster.height_m / 2,
+                    paint_poster(poster, bgr(poster.color)),
+                    POSTER_PX_PER_M,
+                    face.middle,
+                    poster.z_m - poster.height_m / 2,
+                )
+            )
+    return faces

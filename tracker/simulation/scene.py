@@ -12,33 +12,20 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from tracker.errors import ConfigError, SceneError
+from tracker.simulation.interior import Chair, Color, Part, Pose2, Poster, Table, Wall
 from tracker.wording import shown
 from tracker.yaml_reading import read_yaml
 
 #: How long an arm takes from the lap to beside the head; a guess from how people wave to a waiter.
 ARM_MOTION_S = 0.4
 
-Color: TypeAlias = Annotated[str, Field(pattern=r"^#[0-9a-fA-F]{6}$")]
-Point: TypeAlias = Annotated[tuple[float, float], Field(strict=False)]
 Stature: TypeAlias = Annotated[float, Field(ge=1.0, le=2.2)]
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class Pose2(_Part):
-    """A place on the floor and a direction."""
-
-    x_m: float = 0.0
-    y_m: float = 0.0
-    yaw_deg: float = 0.0
-
-
-class WayPoint(_Part):
+class WayPoint(Part):
     """Where somebody is at a time."""
 
     at_s: float = Field(0.0, ge=0.0)
@@ -55,14 +42,14 @@ class DrivePoint(Pose2):
     at_s: float = Field(0.0, ge=0.0)
 
 
-class Raise(_Part):
+class Raise(Part):
     """One raise: the hand is fully up from one time until another, the arm moves around that."""
 
     from_s: float = Field(ge=0.0)
     until_s: float = Field(gt=0.0)
 
 
-class Activity(_Part):
+class Activity(Part):
     """Something that hands do besides calling; a raise interrupts it."""
 
     what: Literal[
@@ -74,7 +61,7 @@ class Activity(_Part):
     tempo: float = Field(1.0, ge=0.2, le=5.0, description="Times as fast.")
 
 
-class PersonLook(_Part):
+class PersonLook(Part):
     """Colors, clothes and build."""
 
     stature_m: Stature = 1.72
@@ -89,7 +76,7 @@ class PersonLook(_Part):
     spread: float = Field(1.0, ge=0.0, le=1.0, description="Of the fingers; 0 is closed.")
 
 
-class Person(_Part):
+class Person(Part):
     """Somebody who walks, stops, sits, raises a hand."""
 
     id: int = Field(ge=1, lt=2**31)
@@ -97,6 +84,12 @@ class Person(_Part):
     path: Annotated[tuple[WayPoint, ...], Field(strict=False, min_length=1)]
     raises: Annotated[tuple[Raise, ...], Field(strict=False)] = ()
     seat_m: float | None = Field(None, ge=0.3, le=0.9, description="Height of the seat.")
+    shins_m: float = Field(
+        0.1, ge=0.0, le=0.6, description="Who sits has the shins so far in front of the body."
+    )
+    stool: bool = Field(
+        True, description="Who sits is drawn on a stool; false where a chair stands there."
+    )
     activities: Annotated[tuple[Activity, ...], Field(strict=False)] = ()
     hand: Literal["left", "right"] = "right"
     raise_style: Literal["beside", "straight", "low"] = Field(
@@ -130,7 +123,7 @@ class Person(_Part):
         return self
 
 
-class Robot(_Part):
+class Robot(Part):
     """The drive of base_link."""
 
     path: Annotated[tuple[DrivePoint, ...], Field(strict=False)] = Field(
@@ -143,7 +136,7 @@ class Robot(_Part):
         return self
 
 
-class Camera(_Part):
+class Camera(Part):
     """A level pinhole camera, fixed to base_link."""
 
     x_m: float = 0.1
@@ -164,7 +157,7 @@ class Camera(_Part):
     exposure: float = Field(1.0, gt=0.0, le=4.0, description="Brightness of everything.")
 
 
-class Laser(_Part):
+class Laser(Part):
     """A planar scanner, fixed to base_link."""
 
     x_m: float = 0.15
@@ -181,35 +174,7 @@ class Laser(_Part):
     dropout: float = Field(0.01, ge=0.0, lt=1.0, description="Share of beams without a return.")
 
 
-class Wall(_Part):
-    """A run of straight walls through corners."""
-
-    corners_m: Annotated[tuple[Point, ...], Field(strict=False, min_length=2)]
-    closed: bool = False
-    height_m: float = Field(2.6, gt=0.0, le=20.0)
-    color: Color = "#d9cbb2"
-    panel: Color = Field("#8a6a4f", description="The lower part, up to 0.9 m.")
-    pictures: bool = True
-
-    @property
-    def segments(self) -> list[tuple[float, float, float, float]]:
-        """x_m, y_m of each straight piece's two ends."""
-        ends = [*self.corners_m[1:], self.corners_m[0]] if self.closed else self.corners_m[1:]
-        return [(*start, *end) for start, end in zip(self.corners_m, ends, strict=False)]
-
-
-class Table(Pose2):
-    """A rectangular table on one or four posts."""
-
-    length_m: float = Field(0.8, gt=0.0, le=10.0, description="Along its own x axis.")
-    width_m: float = Field(0.8, gt=0.0, le=10.0)
-    height_m: float = Field(0.74, gt=0.0, le=2.0)
-    posts: Literal[1, 4] = 4
-    plates: int = Field(2, ge=0, le=8)
-    color: Color = "#b98a5a"
-
-
-class Scene(_Part):
+class Scene(Part):
     """One simulated recording."""
 
     title: str = ""
@@ -223,6 +188,7 @@ class Scene(_Part):
     backlight: float = Field(1.0, gt=0.0, le=16.0, description="Brightness of what is behind.")
     walls: Annotated[tuple[Wall, ...], Field(strict=False)] = ()
     tables: Annotated[tuple[Table, ...], Field(strict=False)] = ()
+    chairs: Annotated[tuple[Chair, ...], Field(strict=False)] = ()
     people: Annotated[tuple[Person, ...], Field(strict=False)] = ()
 
     @model_validator(mode="after")
@@ -320,7 +286,8 @@ def _reason(item: Any) -> str:
 
 
 def _suggestion(name: str) -> str:
-    parts = (Scene, Robot, Camera, Laser, Wall, Table, Person, PersonLook, DrivePoint, WayPoint)
-    known = {key for part in (*parts, Raise, Activity) for key in part.model_fields}
+    things = (Scene, Robot, Camera, Laser, Wall, Poster, Table, Chair)
+    people = (Person, PersonLook, DrivePoint, WayPoint, Raise, Activity)
+    known = {key for part in (*things, *people) for key in part.model_fields}
     close = get_close_matches(name, known, n=1)
     return f"; did you mean `{close[0]}`?" if close else ""

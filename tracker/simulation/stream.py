@@ -15,6 +15,7 @@ from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.messages import CameraInfo, Encodable, Event
 from tracker.recording import RecordingWriter
 from tracker.simulation.camera_view import CameraView, hands_in_view
+from tracker.simulation.floor_map import floor_map
 from tracker.simulation.lidar import ScanSimulator
 from tracker.simulation.motion import people_at, planar_transform, robot_pose
 from tracker.simulation.projection import Viewpoint
@@ -51,8 +52,9 @@ def simulate(scene: Scene, seed: int) -> Iterator[tuple[int, Event]]:
         raise SceneError(f"The seed is {seed}; needed is a whole number from 0 on.")
     camera_rng, scan_rng = (np.random.default_rng([seed, sensor]) for sensor in (0, 1))
     start_ns = scene.start_s * 1_000_000_000
+    at_once: list[Event] = [*_static_transforms(scene), floor_map(scene)]
     yield from merge(
-        ((start_ns, sample) for sample in _static_transforms(scene)),
+        ((start_ns, event) for event in at_once),
         _moving_transforms(scene),
         _scans(scene, scan_rng),
         _images(scene, camera_rng),
@@ -71,7 +73,7 @@ def write_simulation(
 ) -> None:
     """Write a scene as a recording.
 
-    Topics: /image_raw, /camera_info, /scan, /tf, /tf_static and /truth/people.
+    Topics: /image_raw, /camera_info, /scan, /map, /tf, /tf_static and /truth/people.
 
     Args:
         scene: What happens.

@@ -3,7 +3,8 @@ import pytest
 
 from tracker.geometry import RigidTransform
 from tracker.simulation import scene_from_mapping
-from tracker.simulation.lidar import ScanSimulator, cast_rays, table_posts
+from tracker.simulation.legs import table_posts
+from tracker.simulation.lidar import ScanSimulator, cast_rays
 from tracker.simulation.motion import people_at
 
 NOTHING = np.zeros((0, 3)), np.zeros((0, 4))

@@ -59,6 +59,7 @@ def test_events_come_in_the_order_of_recording_at_their_rates(scene):
         "/camera_info": 60,
         "/truth/people": 60,
         "/scan": 20,
+        "/map": 1,
         "/tf": 102,
         "/tf_static": 3,
     }

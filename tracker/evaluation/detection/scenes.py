@@ -15,9 +15,10 @@ import numpy as np
 from tracker.errors import SceneError
 from tracker.simulation import Scene
 from tracker.simulation.camera_view import hands_in_view
+from tracker.simulation.interior import Wall
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
-from tracker.simulation.scene import Activity, Camera, Person, PersonLook, Raise, Wall, WayPoint
+from tracker.simulation.scene import Activity, Camera, Person, PersonLook, Raise, WayPoint
 from tracker.simulation.stream import map_from_camera
 
 #: The hand is up from this time of a caller's scene on; a detector has the time before to look
