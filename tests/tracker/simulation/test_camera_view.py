@@ -52,6 +52,36 @@ def test_a_table_hides_the_legs_behind_it(room):
     assert picture[row, 80].tolist() == [0, 255, 0]
 
 
+def test_a_chair_hides_what_is_behind_its_back_and_not_who_sits_on_it(room):
+    room["robot"], room["tables"] = {}, []
+    room["people"] = [
+        {
+            "id": 1, "seat_m": 0.45, "stool": False, "look": {"shirt": "#ff0000"},
+            "path": [{"x_m": 2.0, "y_m": 0.0, "facing_deg": 180.0}],
+        }
+    ]  # fmt: skip
+    chair = {"x_m": 2.0, "y_m": 0.0, "color": "#00ff00"}
+    trunk = np.s_[round(60 + 115 * (1.2 - 0.72) / 1.9), 80]
+    for yaw_deg, strongest in ((180.0, 2), (0.0, 1)):  # facing the camera, and its back to it
+        room["chairs"] = [chair | {"yaw_deg": yaw_deg}]
+        assert painted(quiet(room), 0.0)[trunk].argmax() == strongest
+
+
+@pytest.mark.parametrize("shows", ["menu", "person", "raised_hand"])
+def test_a_poster_hangs_where_it_is_said_to_and_is_hidden_by_who_stands_before_it(room, shows):
+    room["robot"], room["tables"], room["people"] = {}, [], []
+    # Across the view at 2 m; its middle is straight ahead, at the camera's height.
+    wall = {"corners_m": [[2.1, -2.0], [2.1, 2.0]], "pictures": False}
+    bare = painted(quiet(room | {"walls": [wall]}), 0.0).astype(int)
+    wall["posters"] = [{"at_m": 2.0, "z_m": 1.2, "shows": shows}]
+    changed = np.any(painted(quiet(room | {"walls": [wall]}), 0.0) != bare, axis=-1)
+    rows, columns = np.nonzero(changed)
+    assert np.mean(columns) == pytest.approx(80, abs=1.5)
+    assert np.mean(rows) == pytest.approx(60, abs=1.5)
+    assert np.ptp(columns) == pytest.approx(115 * 0.6 / 2.0, abs=2)
+    assert np.ptp(rows) == pytest.approx(115 * 0.9 / 2.0, abs=2)
+
+
 def test_pixel_noise_has_the_asked_size(room):
     clean = painted(quiet(room), 0.0).astype(float)
     room["camera"].update(noise_std=4.0, blur_px=0.0)
@@ -86,7 +116,7 @@ def test_who_walks_away_shows_the_back(room):
     assert not is_from_behind(view_at(scene, 1.5), people_at(scene, 1.5), 0)
 
 
-@pytest.mark.parametrize("name", ["restaurant", "dining_hall", "lonely"])
+@pytest.mark.parametrize("name", ["restaurant", "dining_hall", "bistro", "lonely"])
 def test_every_hand_of_the_projects_scenes_is_in_view_while_it_is_up(name):
     scene = load_scene(name)
     for time_s in np.arange(0.0, scene.duration_s, 0.1):

@@ -57,6 +57,35 @@ def test_the_scan_sees_a_leg_where_it_is(room, first_beam_deg, yaw_deg):
     np.testing.assert_allclose(away, 0.07, atol=1e-9)
 
 
+def test_tables_stand_on_one_post_on_two_along_them_or_on_four():
+    turned = {"x_m": 1.0, "y_m": 2.0, "yaw_deg": 90.0, "length_m": 1.4, "width_m": 0.8}
+    one, two, four = (
+        table_posts(scene_from_mapping({"duration_s": 1.0, "tables": [table]}).tables[0])
+        for table in (turned | {"posts": count} for count in (1, 2, 4))
+    )
+    np.testing.assert_allclose(one[:, :2], [[1.0, 2.0]])
+    np.testing.assert_allclose(two[:, :2], [[1.0, 2.55], [1.0, 1.45]])
+    assert np.ptp(four[:, 0]) == pytest.approx(0.7)
+    assert np.ptp(four[:, 1]) == pytest.approx(1.3)
+
+
+def test_legs_of_a_round_table_stand_under_it():
+    table = {"length_m": 0.8, "width_m": 0.8, "round": True}
+    (table,) = scene_from_mapping({"duration_s": 1.0, "tables": [table]}).tables
+    assert (np.hypot(*table_posts(table)[:, :2].T) < 0.4).all()
+
+
+def test_the_scan_sees_four_legs_of_a_chair_and_the_column_of_a_bar_stool(room):
+    room["walls"], room["tables"], room["people"] = [], [], []
+    room["laser"] = {"noise_m": 0.0, "dropout": 0.0, "step_deg": 0.1}
+    room["chairs"] = [{"x_m": 2.0, "y_m": 0.0, "yaw_deg": 20.0}]
+    room["chairs"] += [{"kind": "bar_stool", "x_m": 0.0, "y_m": 2.0}]
+    scene = scene_from_mapping(room)
+    scanner = ScanSimulator(scene, np.random.default_rng(0))
+    hit = scanner.scan(7, RigidTransform(), people_at(scene, 0.0)).valid
+    assert np.count_nonzero(np.diff(np.flatnonzero(hit)) > 1) == 4  # five pieces
+
+
 def test_noise_and_dropouts_are_as_large_as_asked(room):
     room["people"], room["tables"] = [], []
     room["laser"] = {"noise_m": 0.03, "dropout": 0.1, "step_deg": 0.1}

@@ -51,6 +51,16 @@ def test_legs_stand_a_tenth_of_a_meter_to_both_sides(scene):
     np.testing.assert_allclose(legs[:, 2], 0.07)
 
 
+def test_shins_of_who_sits_are_in_front_of_the_body(room):
+    room["people"] = [
+        {"id": 1, "seat_m": 0.45, "path": [{"x_m": 2.0, "y_m": 1.0, "facing_deg": 180.0}]}
+    ]
+    for given, forward_m in (({}, 0.1), ({"shins_m": 0.3}, 0.3)):
+        room["people"][0].update(given)
+        legs = people_at(scene_from_mapping(room), 0.0).legs[0, :, :2]
+        np.testing.assert_allclose(legs.mean(axis=0), [2.0 - forward_m, 1.0])
+
+
 def test_walking_legs_swing_against_each_other_along_the_way(scene):
     legs = people_at(scene, 0.65).legs[0]  # a quarter of a stride: 1.3 m / 4 at 0.5 m/s
     np.testing.assert_allclose(legs[:, 1].mean(), 0.725)

@@ -7,7 +7,7 @@ from tracker.errors import SceneError
 from tracker.simulation import load_scene, scene_from_mapping, scene_names
 
 
-@pytest.mark.parametrize("name", ["restaurant", "dining_hall", "lonely"])
+@pytest.mark.parametrize("name", ["restaurant", "dining_hall", "bistro", "lonely"])
 def test_the_scenes_of_the_project_are_found_by_name(name):
     assert name in scene_names()
     assert load_scene(name).people
@@ -40,7 +40,9 @@ def test_a_file_of_ones_own_is_read(tmp_path):
 
 
 def test_an_unknown_name_is_answered_with_the_known_ones():
-    with pytest.raises(SceneError, match=r"'pizzeria'; there are dining_hall, lonely, restaurant"):
+    with pytest.raises(
+        SceneError, match=r"'pizzeria'; there are bistro, dining_hall, lonely, restaurant"
+    ):
         load_scene("pizzeria")
 
 
@@ -60,6 +62,21 @@ def test_an_unknown_name_is_answered_with_the_known_ones():
 def test_a_bad_value_is_named_with_what_is_allowed(room, change, words):
     with pytest.raises(SceneError, match=words):
         scene_from_mapping({**room, **change})
+
+
+@pytest.mark.parametrize(
+    ("poster", "words"),
+    [
+        ({"piece": 1, "at_m": 1.0}, r"walls.0: posters: piece is 1; this wall has the pieces 0"),
+        ({"at_m": 0.2}, r"posters: at_m is 0.2; allowed is 0.3 to 1.7 on piece 0"),
+        ({"at_m": 1.0, "shows": "cat"}, r"`walls.0.posters.0.shows` is 'cat'; allowed is 'menu'"),
+    ],
+    ids=["piece", "place", "content"],
+)
+def test_a_poster_that_hangs_nowhere_is_refused(room, poster, words):
+    room["walls"] = [{"corners_m": [[0.0, 0.0], [2.0, 0.0]], "posters": [poster]}]
+    with pytest.raises(SceneError, match=words):
+        scene_from_mapping(room)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,9 @@ from tracker.evaluation.metrics.scores import TrialScores
 from tracker.evaluation.trials.scenario import ScanScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.pipeline import Pipeline
+from tracker.simulation.bistro import draw_bistro
 from tracker.simulation.camera_view import hands_in_view
+from tracker.simulation.floor_map import floor_map
 from tracker.simulation.lidar import ScanSimulator
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
@@ -57,7 +59,8 @@ def play_scan_trial(
     """
     rng = trial_rng(seed, trial)
     low, high = scenario.people
-    scene = draw_restaurant(
+    draw_room = draw_bistro if scenario.furniture == "bistro" else draw_restaurant
+    scene = draw_room(
         rng,
         people=int(rng.integers(low, high + 1)),
         duration_s=scenario.duration_s,
@@ -106,6 +109,8 @@ def play_scene(
         pipeline.add_transform(
             StampedTransform(start_ns, config.fixed_frame, frame, pose, is_static=True)
         )
+    if scenario.map_known:
+        pipeline.set_map(floor_map(scene))
     scanner = ScanSimulator(scene, rng)
     nothing = np.zeros((camera.height, camera.width, 3), np.uint8)
     for number in range(round(scenario.duration_s * scenario.rate_hz)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from tracker.config import Config
 
@@ -161,7 +161,7 @@ class KnownPeopleScenario:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScanScenario:
-    """A restaurant drawn at random; a ray-cast laser sees people, tables and walls.
+    """A room drawn at random; a ray-cast laser sees people, furniture and walls.
 
     All of the pipeline is at work but the hand models, in whose place the truth shows hands.
 
@@ -170,6 +170,8 @@ class ScanScenario:
         duration_s: Of one trial.
         rate_hz: Frames each second; each has a scan of its own.
         people: How many, from and to; drawn anew for each trial.
+        furniture: `tables` alone, or a `bistro` with chairs, a bar, and people close together.
+        map_known: The pipeline has a map of walls and tables; `use_map` decides what it does.
         sitting_share: How many of them sit at a table; the others walk and stop.
         pause_s: Mean of their stops.
         hand_up_s: How long a hand stays up, from and to.
@@ -184,6 +186,8 @@ class ScanScenario:
     duration_s: float = 120.0
     rate_hz: float = 10.0
     people: tuple[int, int] = (3, 6)
+    furniture: Literal["tables", "bistro"] = "tables"
+    map_known: bool = False
     sitting_share: float = 0.4
     pause_s: float = 20.0
     hand_up_s: tuple[float, float] = (2.0, 6.0)
@@ -262,6 +266,21 @@ SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
         "hands-down": _HANDS_DOWN,
         "hands-down-scans": ScanScenario(
             title="The same in a furnished room, with people found in ray-cast scans.",
+        ),
+        "hands-down-map": ScanScenario(
+            title="The same with a map of walls and tables.",
+            map_known=True,
+        ),
+        "bistro-scans": ScanScenario(
+            title="A bistro with a map: chairs, a bar, shins under tables, people close together.",
+            furniture="bistro",
+            map_known=True,
+        ),
+        "seated-scans": ScanScenario(
+            title="The same where everybody sits.",
+            furniture="bistro",
+            map_known=True,
+            sitting_share=1.0,
         ),
         "cheap-lidar": PeopleScenario(
             title="A cheap laser among people who hardly stop, and nobody has told the tracker.",

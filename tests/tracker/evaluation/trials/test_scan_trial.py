@@ -32,6 +32,17 @@ def test_tracks_stand_where_people_raise_their_hands():
     assert np.mean(near) > 0.8
 
 
+@pytest.mark.parametrize("name", ["hands-down-map", "bistro-scans", "seated-scans"])
+def test_a_known_map_leaves_fewer_clusters_to_be_taken_for_people(name):
+    scenario = replace(SCENARIOS[name], duration_s=2.0)
+    counts = {}
+    for use_map in (True, False):
+        config = default_config(scenario).replace(use_map=use_map)
+        played = play_scan_trial(scenario, config, 5, 0)
+        counts[use_map] = sum(len(result.measurements) for _, result in played)
+    assert counts[True] < 0.8 * counts[False]
+
+
 def test_every_frame_has_a_scan_and_a_place():
     _, result = next(iter(play_scan_trial(SCENARIO, CONFIG, 3, 0)))
     assert result.scan is not None
