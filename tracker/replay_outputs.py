@@ -6,6 +6,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 
+import numpy as np
+
 from tracker.config import NODE_NAME, Config
 from tracker.containers import CameraImage, FrameResult, ImageArray, OccupancyGrid, Scan
 from tracker.messages import encode, encode_markers
@@ -15,6 +17,9 @@ from tracker.report.debug_picture import draw_debug_image
 from tracker.report.debug_video import DebugVideo, side_by_side
 from tracker.report.tracks_csv import TracksCsv
 from tracker.transforms import StampedTransform
+
+#: How far the picture from above reaches: farther once there is a customer to be shown there.
+_AHEAD_M = (4.0, 6.0, 8.0)
 
 
 def replay_files(out: Path) -> tuple[Path, ...]:
@@ -40,6 +45,7 @@ class ReplayOutputs:
     def __init__(self, out: Path, config: Config) -> None:
         recording, table, video, *_ = replay_files(out)
         self._config = config
+        self._ahead_m = _AHEAD_M[0]
         with ExitStack() as opened:
             enter, frame = opened.enter_context, config.fixed_frame
             self._recording = enter(RecordingWriter(recording, fixed_frame=frame, overwrite=True))
@@ -89,4 +95,14 @@ class ReplayOutputs:
     def _side_by_side(self, image: CameraImage, result: FrameResult) -> ImageArray:
         full_size = self._config.replace(downscale_factor=1)
         picture = draw_debug_image(image, result.hands, result.tracks, full_size)
-        return side_by_side(picture, draw_birdseye(result))
+        self._ahead_m = max(self._ahead_m, _reach_m(result))
+        return side_by_side(picture, draw_birdseye(result, ahead_m=self._ahead_m))
+
+
+def _reach_m(result: FrameResult) -> float:
+    """How far the picture from above must reach to show every customer."""
+    xy_m = result.tracks.mean[result.tracks.confirmed, :2]
+    if result.sensor_pose is None or not len(xy_m):
+        return _AHEAD_M[0]
+    farthest_m = float(np.linalg.norm(xy_m - result.sensor_pose[:2], axis=1).max())
+    return next((ahead_m for ahead_m in _AHEAD_M if ahead_m > farthest_m + 0.5), _AHEAD_M[-1])
