@@ -64,7 +64,7 @@ def product_filter(trials: int, people: int) -> Step:
     state = {"mean": np.zeros((count, 4)), "covariance": np.tile(np.eye(4), (count, 1, 1))}
     state["mean"][:, :2] = np.tile(places(people), (trials, 1))
     motion, filtered = walk(PERIOD_S, DENSITY), machine_code(filter_trials)
-    claims = claims_of(polar(np.ones((count, 2)), np.zeros((count, 3))), 0.0, Config())
+    claims = claims_of(polar(np.ones((count, 2)), np.zeros((count, 3))))
 
     def step(frame: int, values: np.ndarray) -> None:
         flat = values.reshape(len(values), -1, 2)

@@ -323,9 +323,15 @@ class Config(BaseModel):
         search=Search("measurement", 0.05, 0.5, log=True),
     )  # fmt: skip
     torso_offset_std_m: float = _parameter(
-        0.08, "Where the body's pose is known: how far its legs stand beside the middle of "
-        "shoulders and hips, as standard deviation.",
+        0.08, "How far a person's legs stand from the middle of shoulders and hips, as standard "
+        "deviation per axis. It lasts: it is part of the published covariance, and of the bearing "
+        "of a hand whose owner's torso is seen.",
         unit="m", group="ranging", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+    mounting_std_deg: float = _parameter(
+        0.5, "How well the yaw of camera and laser on the robot is known, as standard deviation "
+        "(guess). It is part of the published covariance.",
+        unit="deg", group="ranging", live=True, ge=0.0, le=10.0,
     )  # fmt: skip
     wrist_std_px: float = _parameter(
         1.0, "Error of the wrist's column in the full image, for the smallest hand; it stays as "
@@ -389,12 +395,6 @@ class Config(BaseModel):
         "for Gaussian.",
         group="tracking", live=True, ge=0.0, le=1000.0,
         search=Search("measurement", 1.0, 30.0, log=True),
-    )  # fmt: skip
-    hand_bias_duration_s: float = _parameter(
-        0.0, "A hand stands to the same side of the body for so long: without a range, the errors "
-        "of its bearing are alike from frame to frame. 0 takes them for independent.",
-        unit="s", group="tracking", live=True, ge=0.0, le=60.0,
-        search=Search("measurement", 0.0, 3.0),
     )  # fmt: skip
     gate_probability: float = _parameter(
         0.9999, "Share of true measurements that the gate lets through; people start and turn at "
@@ -483,7 +483,8 @@ class Config(BaseModel):
         unit="s", group="selection", live=True, ge=0.0, le=3600.0,
     )  # fmt: skip
     pose_max_std_m: float = _parameter(
-        0.5, "A pose is given only while its standard deviation, along its worst axis, is below.",
+        0.5, "A pose is given only while the standard deviation that is published with it, along "
+        "its worst axis, is below.",
         unit="m", group="selection", live=True, gt=0.0, le=10.0,
     )  # fmt: skip
     pose_max_age_s: float = _parameter(

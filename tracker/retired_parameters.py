@@ -12,6 +12,7 @@ from typing import Any
 #: Their names, and why they went.
 RETIRED = {
     "appearance_weight": "the colors of clothes saved false raises and cost false customers",
+    "hand_bias_duration_s": "what lasts of an error is part of the published covariance",
     "measurement_model": "bearing and range are always compared where they were taken (polar)",
     **dict.fromkeys(
         (

@@ -27,6 +27,7 @@ def polar(**changes):
         "range_std_m": np.full(3, 0.1),
         "sensor_pose": np.tile([1.0, 2.0, 0.5], (3, 1)),
         "sensor_pose_covariance": np.zeros((3, 3, 3)),
+        "bias_covariance": np.zeros((3, 2, 2)),
     }
     refuse = changes.pop("refuse", "raise")
     for name, value in changes.items():
@@ -65,6 +66,7 @@ BAD_ROWS = {
     "doubt that is lopsided": (
         {"sensor_pose_covariance": np.eye(3) + np.eye(3, k=1)}, "sensor_pose_covariance [[1.0, 1",
     ),
+    "bias that is negative": ({"bias_covariance": -np.eye(2)}, "bias_covariance [[-1.0"),
     "doubt that is unknown": ({"sensor_pose_covariance": np.full((3, 3), NAN)}, "semidefinite"),
 }  # fmt: skip
 

@@ -33,6 +33,12 @@ _KINDS = frozenset(map(int, SensorKind))
 _ALONE = frozenset({int(SensorKind.BEARING), int(SensorKind.RANGE)})
 _POSITIONS = frozenset({int(SensorKind.POSITION)})
 
+#: Covariances that may be zero, and when to leave them out.
+_WITHOUT = {
+    "sensor_pose_covariance": "Leave it out (None) where the sensor's pose is well known.",
+    "bias_covariance": "Leave it out (None) where no part of the error lasts.",
+}
+
 #: What becomes of rows that a tracker cannot use.
 Refuse: TypeAlias = Literal["raise", "drop"]
 
@@ -106,7 +112,7 @@ def _are_plain(claims: Measurements) -> bool:
     if len(claims) == 0:
         return True
     values, noise = claims.values, claims.covariance.reshape(-1, 4)
-    doubt, kinds = claims.sensor_pose_covariance, set(claims.kind.tolist())
+    doubts, kinds = _doubts(claims).values(), set(claims.kind.tolist())
     if not kinds <= _KINDS:
         return False
     alone = kinds & _ALONE
@@ -123,7 +129,7 @@ def _are_plain(claims: Measurements) -> bool:
         and noise[:, ::3].min() > VARIANCE_MIN
         and (np.count_nonzero(noise[:, 1:3]) == 0 or _are_definite(noise, bool(alone)).all())
         and not (alone and np.count_nonzero(noise[:, ::3][absent] != 1.0))
-        and (np.count_nonzero(doubt) == 0 or are_semidefinite(doubt).all())
+        and all(np.count_nonzero(each) == 0 or are_semidefinite(each).all() for each in doubts)
     )
 
 
@@ -238,18 +244,24 @@ def _are_definite(noise: FloatArray, alone: BoolArray | bool) -> BoolArray:
 
 
 def _faults_of_pose(claims: Measurements) -> Iterator[_Fault]:
-    pose, doubt = claims.sensor_pose, claims.sensor_pose_covariance
+    pose = claims.sensor_pose
     yield _Fault(
         np.asarray(~(np.abs(pose) < ABSURD_M).all(axis=1)),
         lambda row: f"the sensor_pose {pose[row].tolist()}",
         f"x_m, y_m and yaw_rad, each a finite number below {ABSURD_M:g}",
     )
-    yield _Fault(
-        ~are_semidefinite(doubt),
-        lambda row: f"the sensor_pose_covariance {doubt[row].tolist()}",
-        f"a symmetric positive semidefinite matrix of numbers below {VARIANCE_MAX:g}",
-        "Leave it out (None) where the sensor's pose is well known.",
-    )
+    for name, doubt in _doubts(claims).items():
+        yield _Fault(
+            ~are_semidefinite(doubt),
+            lambda row, name=name, doubt=doubt: f"the {name} {doubt[row].tolist()}",  # type: ignore[misc]
+            f"a symmetric positive semidefinite matrix of numbers below {VARIANCE_MAX:g}",
+            _WITHOUT[name],
+        )
+
+
+def _doubts(claims: Measurements) -> dict[str, FloatArray]:
+    """The covariances that may be zero, by name."""
+    return {name: getattr(claims, name) for name in _WITHOUT}
 
 
 def are_semidefinite(covariance: FloatArray) -> BoolArray:

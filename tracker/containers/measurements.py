@@ -46,6 +46,7 @@ _LAYOUT = {
     "hand": (COUNTS, ()),
     "sensor_pose_covariance": (NUMBERS, (3, 3)),
     "identity": (COUNTS, ()),
+    "bias_covariance": (NUMBERS, (2, 2)),
 }
 _ORIGIN = constant(0.0, (3,))
 #: Of a bearing and a range: the kind, by whether the bearing and whether the range is NaN.
@@ -62,6 +63,7 @@ class _Details(TypedDict, total=False):
     hand: ArrayLike
     identity: ArrayLike
     sensor_pose_covariance: ArrayLike | None
+    bias_covariance: ArrayLike | None
     refuse: Refuse
 
 
@@ -90,6 +92,10 @@ class Measurements:
         identity: Shape (M,), int64: claims that share a non-negative number come from the same
             person at all times, such as the number of a tag; negative where nobody knows. None
             means -1 everywhere.
+        bias_covariance: Shape (M, 2, 2), in the fixed frame, in square meters: of the part of the
+            place's error that lasts from image to image, such as the distance between legs and
+            torso. It is considered in `Tracks.covariance`, not in the gain, and need not be part
+            of `covariance`. None means zeros.
 
     Raises:
         ShapeError: The arrays disagree in length.
@@ -105,6 +111,7 @@ class Measurements:
     hand: IntArray
     sensor_pose_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
     identity: IntArray = None  # type: ignore[assignment]  # -1 takes its place
+    bias_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
 
     def __post_init__(self) -> None:
         count = len(self.values)
@@ -112,6 +119,8 @@ class Measurements:
             object.__setattr__(self, "sensor_pose_covariance", constant(0.0, (count, 3, 3)))
         if self.identity is None:
             object.__setattr__(self, "identity", constant(-1, (count,), COUNTS))
+        if self.bias_covariance is None:
+            object.__setattr__(self, "bias_covariance", constant(0.0, (count, 2, 2)))
         check_rows(self, count, _LAYOUT)
         check_measurements(self)
 
@@ -139,6 +148,7 @@ class Measurements:
         hand: ArrayLike = -1,
         identity: ArrayLike = -1,
         sensor_pose_covariance: ArrayLike | None = None,
+        bias_covariance: ArrayLike | None = None,
         refuse: Refuse = "raise",
     ) -> Measurements:
         """Bearings and ranges seen from a sensor; either may be NaN where it is not known.
@@ -155,6 +165,7 @@ class Measurements:
             hand: Shape (M,) or one number; see the class.
             identity: Shape (M,) or one number; see the class.
             sensor_pose_covariance: Shape (3, 3) or (M, 3, 3); None where the pose is well known.
+            bias_covariance: Shape (2, 2) or (M, 2, 2); see the class. None where nothing lasts.
             refuse: What becomes of rows that a tracker cannot use: "raise" an error, or "drop"
                 them.
 
@@ -171,7 +182,8 @@ class Measurements:
         fill("range_std_m", covariance[:, 1, 1], range_std_m)
         std, poses = covariance.reshape(count, 4)[:, ::3], _poses(sensor_pose, count)
         kind, known = _kinds(values, std)
-        is_ordinary = sensor_pose_covariance is None and are_ordinary(known, std, poses)
+        is_plain = sensor_pose_covariance is None and bias_covariance is None
+        is_ordinary = is_plain and are_ordinary(known, std, poses)
         _square(covariance, is_ordinary)
         claims = trusted(
             Measurements,
@@ -182,8 +194,9 @@ class Measurements:
             raised=_column("raised", raised, count, FLAGS),
             person=_column("person", person, count, COUNTS),
             hand=_column("hand", hand, count, COUNTS),
-            sensor_pose_covariance=_doubts(sensor_pose_covariance, count),
+            sensor_pose_covariance=_matrices("sensor_pose", sensor_pose_covariance, count, 3),
             identity=_column("identity", identity, count, COUNTS),
+            bias_covariance=_matrices("bias", bias_covariance, count, 2),
         )
         return _usable(claims, refuse, is_ordinary)
 
@@ -223,6 +236,7 @@ class Measurements:
         person: ArrayLike = -1,
         hand: ArrayLike = -1,
         identity: ArrayLike = -1,
+        bias_covariance: ArrayLike | None = None,
         refuse: Refuse = "raise",
     ) -> Measurements:
         """Positions in the fixed frame.
@@ -234,6 +248,7 @@ class Measurements:
             person: Shape (M,) or one number; see the class.
             hand: Shape (M,) or one number; see the class.
             identity: Shape (M,) or one number; see the class.
+            bias_covariance: As in `polar`.
             refuse: As in `polar`.
 
         Raises:
@@ -259,6 +274,7 @@ class Measurements:
             hand=_column("hand", hand, count, COUNTS),
             sensor_pose_covariance=constant(0.0, (count, 3, 3)),
             identity=_column("identity", identity, count, COUNTS),
+            bias_covariance=_matrices("bias", bias_covariance, count, 2),
         )
         return _usable(claims, refuse)
 
@@ -320,12 +336,12 @@ def _poses(sensor_pose: ArrayLike, count: int) -> FloatArray:
     return sealed(poses)
 
 
-def _doubts(sensor_pose_covariance: ArrayLike | None, count: int) -> FloatArray:
-    if sensor_pose_covariance is None:
-        return constant(0.0, (count, 3, 3))
-    doubts = np.empty((count, 3, 3))
-    fill("sensor_pose_covariance", doubts, sensor_pose_covariance)
-    return sealed(doubts)
+def _matrices(name: str, covariance: ArrayLike | None, count: int, size: int) -> FloatArray:
+    if covariance is None:
+        return constant(0.0, (count, size, size))
+    matrices = np.empty((count, size, size))
+    fill(f"{name}_covariance", matrices, covariance)
+    return sealed(matrices)
 
 
 def _column(name: str, value: ArrayLike, count: int, dtype: np.dtype[Any]) -> NDArray[Any]:

@@ -40,7 +40,9 @@ class Tracks:
         stamp_ns: Sensor time the estimate is valid for.
         id: Shape (N,), int64, from 1; never reused by one tracker.
         mean: Shape (N, 4): x_m, y_m, vx_mps, vy_mps in the fixed frame.
-        covariance: Shape (N, 4, 4), in the order and units of `mean`.
+        covariance: Shape (N, 4, 4), in the order and units of `mean`: of what is published. It is
+            the filter's own, and on the position what lasts of the measurements' errors
+            (`Measurements.bias_covariance`), which no filter averages out.
         existence: Shape (N,), probability that this person is really there.
         confirmed: Shape (N,), bool: seen often enough to be believed.
         raised: Shape (N,), bool: the streak says that this person's hand is up.

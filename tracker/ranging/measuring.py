@@ -9,6 +9,7 @@ from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray, LocatedScan, Measurements
 from tracker.geometry import RigidTransform, normalize_angle
 from tracker.ranging.background import Background
+from tracker.ranging.bias import bias_covariance
 from tracker.ranging.hand_pairs import pair_hands
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.person_range import owners
@@ -130,6 +131,14 @@ def _hand_measurements(
     supposed_m = np.where(np.isnan(range_m), config.unknown_range_m, range_m)
     offset_m = np.where(hands.is_owned, config.torso_offset_std_m, config.hand_offset_std_m)
     offset_std = np.arctan2(offset_m, np.maximum(supposed_m, 0.3))
+    heading = rays.bearing_rad[rows] + rays.origin[2]
+    bias = bias_covariance(
+        heading,
+        supposed_m[rows],
+        config,
+        along_m=config.torso_offset_std_m,
+        across_m=offset_m[rows],
+    )
     return Measurements.polar(
         rays.bearing_rad[rows],
         range_m[rows],
@@ -139,6 +148,7 @@ def _hand_measurements(
         raised=hands.raised[rows],
         person=pair[rows],
         hand=rows,
+        bias_covariance=bias,
         refuse="drop",
     )
 
@@ -155,9 +165,11 @@ def _body_measurements(
     """Person clusters as bearing and range from the camera, noise alike in both directions."""
     offset = xy_m - origin[:2]
     range_m = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), _RANGE_MIN_M)
-    bearing = normalize_angle(np.arctan2(offset[:, 1], offset[:, 0]) - origin[2])
+    heading = np.arctan2(offset[:, 1], offset[:, 0])
+    offset_m = config.torso_offset_std_m
+    bias = bias_covariance(heading, range_m, config, along_m=offset_m, across_m=offset_m)
     return Measurements.polar(
-        bearing,
+        normalize_angle(heading - origin[2]),
         range_m,
         body_bearing_std_rad(range_m, config.range_std_m),
         config.range_std_m,
@@ -165,6 +177,7 @@ def _body_measurements(
         raised=raised,
         person=person,
         hand=hand,
+        bias_covariance=bias,
         refuse="drop",
     )
 

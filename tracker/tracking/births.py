@@ -5,6 +5,7 @@ from __future__ import annotations
 from tracker.compiling.loops import loop
 from tracker.containers import FloatArray
 from tracker.tracking import people as field
+from tracker.tracking.bias import BIAS
 from tracker.tracking.claims import Claims
 from tracker.tracking.found import Found
 from tracker.tracking.life_cycle import BIRTH_EXISTENCE
@@ -59,6 +60,8 @@ def begin_person(
         stamp_ns
     )
     room.spans[field.EXISTENCE, row], room.spans[field.MISSING_S, row] = BIRTH_EXISTENCE, 0.0
+    for item, i, j in BIAS:
+        room.spans[item, row] = claims.bias[claim, i, j]
     room.flags[field.RAISED, row] = room.flags[field.CONFIRMED, row] = False
     for age in range(room.recent.shape[1]):
         room.recent[row, age] = False

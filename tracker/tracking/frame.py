@@ -11,6 +11,7 @@ from tracker.compiling.loops import maker
 from tracker.containers import FloatArray
 from tracker.tracking.admission import plan_rounds
 from tracker.tracking.association import associate
+from tracker.tracking.bias import consider_bias
 from tracker.tracking.claims import Claims
 from tracker.tracking.correction import correct_people
 from tracker.tracking.found import nothing_found, take
@@ -80,6 +81,7 @@ def make_frame(predict: Callable[..., Any], associate: Callable[..., Any]) -> Ca
             note_round(trace, number, rows, now, chance, pairs, chosen)
             correct_people(now, claims, pairs, probability, settings.outlier_dof)
             believe(now, chosen, pairs, chance)
+            consider_bias(now, covariance, chosen, pairs, claims)
             take(found, chosen, probability, pairs, claims)
         return renew(now, claims, found, instant, settings)
 

@@ -50,7 +50,7 @@ def frame_types() -> FrameTypes:
     claims = types.NamedTuple(
         [
             *(*arrays("23", number), *arrays("1", whole), *arrays("23", number)),
-            *(*arrays("1", truth), *arrays("111", whole)),
+            *(*arrays("1", truth), *arrays("111", whole), *arrays("3", number)),
         ],
         Claims,
     )

@@ -10,8 +10,9 @@ from tracker.compiling.loops import loop, maker
 from tracker.containers import BoolArray, FloatArray, IntArray
 
 #: Rows of `People.spans`: probability that somebody is there; time in which nothing showed them
-#: although they were in view; time since the first and since the last measurement.
-EXISTENCE, MISSING_S, AGE_S, UNSEEN_S = range(4)
+#: although they were in view; time since the first and since the last measurement; covariance in
+#: square meters of what lasts of the place's error (see `bias`).
+EXISTENCE, MISSING_S, AGE_S, UNSEEN_S, BIAS_XX, BIAS_XY, BIAS_YY = range(7)
 #: Rows of `People.counts`. ID is above 0 for customers and below for bystanders, whose hand has
 #: never been up; then stamps of the first and the last measurement, of the last raised hand and
 #: of when the hand last began to count as raised (-1 never); the streaks' counters; raised-hand
@@ -30,7 +31,7 @@ class People(NamedTuple):
         weight: Shape (K, N): probability of each mode, adding up to 1.
         mean: Shape (K, N, 4): x_m, y_m, vx_mps, vy_mps in the fixed frame.
         covariance: Shape (K, N, 4, 4).
-        spans: Shape (4, N); its rows, and those of the next two, are named above.
+        spans: Shape (7, N); its rows, and those of the next two, are named above.
         counts: Shape (10, N), int64.
         flags: Shape (2, N), bool.
         recent: Shape (N, W), bool: raised-hand detections of the last W images, newest first.
@@ -52,7 +53,7 @@ def room_for(modes: int, people: int, window: int) -> People:
         np.empty((modes, people)),
         np.empty((modes, people, 4)),
         np.empty((modes, people, 4, 4)),
-        np.empty((4, people)),
+        np.empty((7, people)),
         np.empty((10, people), np.int64),
         np.empty((2, people), np.bool_),
         np.empty((people, window), np.bool_),

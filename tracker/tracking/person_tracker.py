@@ -181,7 +181,7 @@ class PersonTracker:
         dt_s = min(dt_s, 10.0 * max(self._config.delete_after_s, self._config.forget_after_s))
         if likeness is None:  # whose columns are the measurements as they came
             measurements = with_positions(measurements)
-        claims = claims_of(measurements, dt_s, self._config)
+        claims = claims_of(measurements)
         instant = Instant(
             stamp_ns,
             dt_s,

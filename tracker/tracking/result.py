@@ -7,6 +7,7 @@ import numpy as np
 from tracker.containers import IntArray, Tracks
 from tracker.containers.arrays import sealed, trusted
 from tracker.tracking import people as field
+from tracker.tracking.bias import BIAS
 from tracker.tracking.renewal import Frame
 
 
@@ -34,13 +35,15 @@ def tracks_of(frame: Frame, stamp_ns: int, rows: IntArray | None) -> Tracks:
         counts, flags, spans = counts[:, rows], flags[:, rows], spans[:, rows]
         mean, covariance = mean[rows], covariance[rows]
     counts, flags, spans = sealed(counts[:]), sealed(flags[:]), sealed(spans[:])
-    mean, covariance = sealed(mean[:]), sealed(covariance[:])
+    mean, covariance = sealed(mean[:]), covariance.copy()
+    for item, i, j in BIAS:
+        covariance[:, i, j] += spans[item]
     return trusted(
         Tracks,
         stamp_ns=stamp_ns,
         id=counts[field.ID],
         mean=mean,
-        covariance=covariance,
+        covariance=sealed(covariance),
         existence=spans[field.EXISTENCE],
         confirmed=flags[field.CONFIRMED],
         raised=flags[field.RAISED],

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tracker import Config, PersonTracker
+from tracker import PersonTracker
 from tracker.tracking.claims import claims_of
 from tracker.tracking.correction import correct
 from tracker.tracking.gating import find_pairs
@@ -40,7 +40,7 @@ def _merged(people):
 
 
 def _pairs(people, measured, config, *, chance=0.9, density=None, likeness=NO_LIKENESS, rows=None):
-    claims, settings = claims_of(measured, 0.1, config), settings_of(config)
+    claims, settings = claims_of(measured), settings_of(config)
     mean, covariance = _merged(people)
     return find_pairs(
         people,
@@ -57,7 +57,7 @@ def _pairs(people, measured, config, *, chance=0.9, density=None, likeness=NO_LI
 
 def _corrected(mean, covariance, measured, dof=0.0):
     mean, covariance = np.asarray(mean)[None], np.asarray(covariance)[None]
-    claims = claims_of(measured, 0.1, Config(hand_bias_duration_s=0.0))
+    claims = claims_of(measured)
     posterior_mean, posterior = np.empty_like(mean), np.empty_like(covariance)
     for row in range(len(measured)):
         correct(

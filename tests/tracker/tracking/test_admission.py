@@ -27,7 +27,7 @@ def rounds_of(people_of):
         places = np.pad(np.reshape(callers_m, (-1, 2)), ((0, 0), (0, 2)))
         people = people_of(places, np.eye(4))
         people.flags[RAISED] = True
-        claims = claims_of(measured, 0.1, CONFIG)
+        claims = claims_of(measured)
         found = plan_rounds(people, people.mean, claims, settings_of(CONFIG))
         edges = zip(found.begins[:-1], found.begins[1:], strict=True)
         return [found.rows[begin:end].tolist() for begin, end in edges], found.raised

@@ -208,7 +208,7 @@ def test_the_posterior_by_one_pair_mixes_the_prior_and_the_kalman_filter_s_updat
     people = people_of(mean, covariance)
     pairs = pairs_of(people, measured, config, chance=0.6)
     chosen, probability = associate(pairs, 1, 2, settings_of(config))
-    correct_people(people, claims_of(measured, 0.1, config), pairs, probability, 0.0)
+    correct_people(people, claims_of(measured), pairs, probability, 0.0)
 
     (pair,) = chosen
     odds = np.exp(pairs.log_odds[pair])

@@ -36,7 +36,7 @@ def newcomer():
     for array in room:
         array[:] = 77
     measured = Measurements.cartesian([9.0, 9.0], np.eye(2), hand=3, identity=8)
-    claims, settings = claims_of(measured, 0.1, CONFIG), settings_of(CONFIG)
+    claims, settings = claims_of(measured), settings_of(CONFIG)
     begin_person(room, 1, -5, PLACE, claims, 0, 12, settings)
     return room
 

@@ -112,7 +112,7 @@ def test_one_track_is_the_pda_filter(people_of, pairs_of):
     people, noise = people_of(mean[None], covariance), 0.05 * np.eye(2)
     measured = Measurements.cartesian([[1.3, 2.1], [0.8, 1.6]], noise)
     pairs, share = pairs_of(people, measured, PLAIN), np.array([0.5, 0.3])
-    correct_people(people, claims_of(measured, 0.1, PLAIN), pairs, share, 0.0)
+    correct_people(people, claims_of(measured), pairs, share, 0.0)
 
     observe = np.eye(2, 4)
     spread = observe @ covariance @ observe.T + noise
@@ -133,7 +133,7 @@ def test_modes_that_explain_the_measurements_better_gain_weight(people_of, pairs
     config = PLAIN.replace(motion="imm")
     pairs, probability = pairs_of(people, measured, config), np.array([0.6, 0.1])
     likely = np.exp(pairs.log_likelihood)
-    correct_people(people, claims_of(measured, 0.1, config), pairs, probability, 0.0)
+    correct_people(people, claims_of(measured), pairs, probability, 0.0)
 
     weight = np.array([0.4, 0.6])
     ratio = likely / (likely @ weight)[:, None]
@@ -151,9 +151,7 @@ def test_who_has_no_pair_stays_as_predicted(people_of, pairs_of):
     before = [each.copy() for each in people]
     near = Measurements.cartesian(people.mean[0, [2], :2], 0.01 * np.eye(2))
     pairs = pairs_of(people, near, PLAIN)
-    correct_people(
-        people, claims_of(near, 0.1, PLAIN), pairs, np.where(pairs.track == 2, 0.7, 0.0), 0.0
-    )
+    correct_people(people, claims_of(near), pairs, np.where(pairs.track == 2, 0.7, 0.0), 0.0)
     others = [0, 1, 3]
     for now, then in zip(people[:3], before[:3], strict=True):
         np.testing.assert_array_equal(now[:, others], then[:, others])
@@ -167,7 +165,7 @@ def test_far_from_the_origin_hypotheses_are_mixed_as_near_it(people_of, pairs_of
         points = np.array([[1.25 + far, 2.125], [0.75 + far, 1.625]])
         measured = Measurements.cartesian(points, 0.05 * np.eye(2))
         pairs = pairs_of(people, measured, PLAIN)
-        claims = claims_of(measured, 0.1, PLAIN)
+        claims = claims_of(measured)
         correct_people(people, claims, pairs, np.array([0.5, 0.3]), 0.0)
         posterior.append((people.mean[0, 0] - [far, 0, 0, 0], people.covariance[0, 0]))
     for near, away in zip(*posterior, strict=True):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tracker import Config, Measurements
+from tracker import Measurements
 from tracker.tracking.claims import claims_of
 from tracker.tracking.found import NOBODY, NOT_IN, nothing_found, take
 from tracker.tracking.gating import Pairs
@@ -15,7 +15,7 @@ def claims():
     measured = Measurements.cartesian(
         np.zeros((3, 2)), np.eye(2), raised=[True, False, False], hand=[4, 5, -1]
     )
-    return claims_of(measured, 0.1, Config())
+    return claims_of(measured)
 
 
 def taken(found, claims, *whose, probability=0.8):

@@ -14,7 +14,6 @@ CHOICES = {
     "motion": ("imm", "cv"),
     "association": ("pda", "jpda", "hungarian"),
     "outlier_dof": (0.0, 4.0, 1.5),
-    "hand_bias_duration_s": (0.0, 0.0, 1.0),
     "gate_probability": (0.9999, 0.99),
     "innovation_floor_m": (0.05, 0.0),
     "detection_probability": (0.9, 0.6),

@@ -116,7 +116,7 @@ def test_twice_the_density_of_strangers_is_half_the_odds(person, pairs_of):
 def test_the_pairs_are_those_that_a_dense_gate_lets_through(crowd, odds_of, dof):
     config = CONFIG.replace(outlier_dof=dof)
     measured, sensors = mixed_claims(np.random.default_rng(13))
-    claims, expected = claims_of(measured, 0.1, config), set()
+    claims, expected = claims_of(measured), set()
     for track in range(30):
         for row, kind in enumerate(claims.kind):
             y, s = spread_of(crowd, claims, track, row)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tracker import Config, Measurements
+from tracker import Measurements
 from tracker.containers import SensorKind
 from tracker.tracking.claims import claims_of
 from tracker.tracking.innovation import innovation_of, noise_of, projected, seen_from
@@ -11,7 +11,7 @@ NOISE = np.array([[0.04, 0.01], [0.01, 0.09]])
 
 
 def claim_of(measured):
-    return int(measured.kind[0]), claims_of(measured, 0.1, Config())
+    return int(measured.kind[0]), claims_of(measured)
 
 
 def innovation(state, measured):

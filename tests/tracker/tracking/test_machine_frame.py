@@ -57,7 +57,7 @@ ODD = {
 @pytest.mark.parametrize("measured", ODD.values(), ids=ODD)
 @pytest.mark.parametrize(
     "config",
-    [Config(), Config(motion="cv", hand_bias_duration_s=1.0)],
+    [Config(), Config(motion="cv")],
     ids=["two modes", "one mode, biased hands"],
 )
 @pytest.mark.parametrize("watch", [None, lambda frame: None], ids=["alone", "watched"])

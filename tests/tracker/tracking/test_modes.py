@@ -62,7 +62,7 @@ def test_two_modes_are_filterpy_s_imm_estimator(
         measured = Measurements.cartesian(z, NOISE)
         pairs = pairs_of(ahead, measured, CONFIG)
         _, probability = associate(pairs, 1, 1, settings_of(CONFIG))
-        correct_people(ahead, claims_of(measured, dt_s, CONFIG), pairs, probability, 0.0)
+        correct_people(ahead, claims_of(measured), pairs, probability, 0.0)
         people = ahead
     np.testing.assert_allclose(people.weight[:, 0], imm.mu, atol=1e-10)
     for mode in range(2):

@@ -33,7 +33,7 @@ def test_there_is_room_for_so_many_people_modes_and_images():
     room = room_for(2, 3, 4)
     assert [each.shape for each in room] == [
         *((2, 3), (2, 3, 4), (2, 3, 4, 4)),
-        *((4, 3), (10, 3), (2, 3), (3, 4)),
+        *((7, 3), (10, 3), (2, 3), (3, 4)),
     ]
     assert [each.dtype.name for each in room] == [*["float64"] * 4, "int64", "bool", "bool"]
 

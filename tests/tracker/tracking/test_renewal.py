@@ -35,7 +35,7 @@ def renewed(measured, people=None, owner=None, next_id=1, stamp_ns=0, next_bysta
     instant = Instant(
         *(stamp_ns, 0.1, next_id, next_bystander, EVERYWHERE, EVERYWHERE, False, True)
     )
-    return renew(people, claims_of(measured, 0.1, CONFIG), found, instant, settings_of(CONFIG))
+    return renew(people, claims_of(measured), found, instant, settings_of(CONFIG))
 
 
 def bystanders(*places):

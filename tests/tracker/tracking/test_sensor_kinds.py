@@ -37,7 +37,7 @@ def claim(kind, pose=POSE, range_m=3.0):
         range_m = np.nan if kind == SensorKind.BEARING else range_m
         measured = Measurements.polar(bearing_rad, range_m, 0.05, 0.1, pose)
     assert measured.kind.tolist() == [kind]
-    return claims_of(measured, 0.1, CONFIG)
+    return claims_of(measured)
 
 
 def by_hand(kind, place, pose):

@@ -39,7 +39,7 @@ def filter_trials(
     for frame in range(frames):
         measured = Claims(
             values[frame], claims.noise, claims.kind, claims.pose, claims.doubt, claims.raised,
-            claims.body, claims.hand, claims.tag,
+            claims.body, claims.hand, claims.tag, claims.bias,
         )  # fmt: skip
         for trial in range(trials):
             carry(now, spread, 0, trial, motion, now, spread)

@@ -132,7 +132,7 @@ def run_filter(
         frozen(trials.prior_mean),
         sealed(np.tile(prior_covariance(scenario), (count, 1, 1))),
         sealed(np.stack([trials.bearing_rad, trials.range_m], axis=-1)),
-        claims_of(anything, 0.0, config),
+        claims_of(anything),
         walk(1.0 / scenario.rate_hz, config.acceleration_density),
         config.outlier_dof,
     )

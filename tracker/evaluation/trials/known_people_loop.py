@@ -66,7 +66,7 @@ def follow(
         frozen(np.ascontiguousarray(mean)),
         frozen(np.ascontiguousarray(covariance)),
         frozen(np.ascontiguousarray(values)),
-        claims_of(anything, 0.0, config),
+        claims_of(anything),
         walk(dt_s, config.acceleration_density),
         float(np.log(chance / (1.0 - chance) / nobody)),
         settings_of(config),
@@ -107,7 +107,7 @@ def follow_trials(
         for frame in range(frames):
             measurements = Claims(
                 values[trial, frame], claims.noise, claims.kind, claims.pose, claims.doubt,
-                claims.raised, claims.body, claims.hand, claims.tag,
+                claims.raised, claims.body, claims.hand, claims.tag, claims.bias,
             )  # fmt: skip
             for person in range(count):
                 carry(now, spread, 0, person, motion, now, spread)

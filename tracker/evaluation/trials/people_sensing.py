@@ -89,8 +89,9 @@ def sense(scenario: PeopleScenario, scene: PeopleScene, rng: np.random.Generator
     )
     pose_std = [scenario.pose_std_m, scenario.pose_std_m, np.deg2rad(scenario.pose_std_deg)]
     doubt = np.tile(np.diag(np.square(pose_std)), (len(measurements), 1, 1))
+    bias = _bias(scenario, scene, measured, poses)
     return SensedFrames(
-        replace(measurements, sensor_pose_covariance=doubt),
+        replace(measurements, sensor_pose_covariance=doubt, bias_covariance=bias),
         np.searchsorted(measured.frame, np.arange(len(poses) + 1)),
         poses,
         float(np.deg2rad(scenario.field_of_view_deg)),
@@ -170,6 +171,24 @@ def _poses(scenario: PeopleScenario, yaw_rad: FloatArray, rng: np.random.Generat
     poses[:, 2] = np.deg2rad(scenario.pose_std_deg) * rng.standard_normal(len(yaw_rad))
     poses[:, 2] += yaw_rad
     return poses
+
+
+def _bias(
+    scenario: PeopleScenario, scene: PeopleScene, measured: _Rows, poses: FloatArray
+) -> FloatArray:
+    """Shape (C, 2, 2): what lasts of the error of each place, as far as the robot can know it.
+
+    Hands are up beside bodies, and a latency shifts everybody by as much as the robot turns
+    meanwhile; how people walk meanwhile is not known. Both are across the line of sight.
+    """
+    at_s = scene.truth.stamps_ns / 1e9
+    turn = np.gradient(scene.robot_yaw_rad, at_s) if len(at_s) > 1 else np.zeros(1)
+    range_m = np.where(np.isnan(measured.range_m), 0.0, measured.range_m)
+    late_m = scenario.latency_s * turn[measured.frame] * range_m
+    across_m = np.hypot(np.where(measured.raised, scenario.hand_offset_m, 0.0), late_m)
+    heading = measured.bearing_rad + poses[measured.frame, 2]
+    left = across_m[:, None] * np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
+    return np.asarray(left[:, :, None] * left[:, None])
 
 
 def _hidden(

@@ -12,6 +12,7 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import Measurements, SensorKind
+from tracker.ranging.bias import bias_covariance
 from tracker.ranging.measuring import body_bearing_std_rad
 
 #: The parameters that ranging states noise by.
@@ -27,7 +28,8 @@ def restate(
     """The same measurements with the noise that ranging would state under `config`.
 
     As `ranging: person` does: a person in the scan has the same noise in both
-    directions, and a hand without a range stands somewhere beside its body.
+    directions, and a hand without a range stands somewhere beside its body. What lasts is restated
+    too where it is known what was told.
 
     Args:
         measurements: Bearings and ranges; positions are left alone.
@@ -48,4 +50,12 @@ def restate(
         for offset_m in (told_hand_offset_std_m, config.hand_offset_std_m)
     )
     noise[alone, 0, 0] = np.maximum(noise[alone, 0, 0] - told, _PIXEL_VARIANCE_MIN) + stated
-    return replace(measurements, covariance=noise)
+    body_m = config.torso_offset_std_m
+    bias = bias_covariance(
+        measurements.values[:, 0] + measurements.sensor_pose[:, 2],
+        np.where(alone, config.unknown_range_m, range_m),
+        config,
+        along_m=body_m,
+        across_m=np.where(alone, config.hand_offset_std_m, body_m),
+    )
+    return replace(measurements, covariance=noise, bias_covariance=bias)

@@ -13,6 +13,7 @@ from tracker.containers.arrays import COUNTS, frozen, sealed
 from tracker.evaluation.metrics.frames import TrackFrames
 from tracker.evaluation.trials.machine_code import machine_code
 from tracker.evaluation.trials.people_sensing import SensedFrames
+from tracker.tracking.bias import BIAS
 from tracker.tracking.claims import Claims, claims_of
 from tracker.tracking.frame import track_frame
 from tracker.tracking.instant import Instant
@@ -54,7 +55,7 @@ class TrackRows(NamedTuple):
         counts: Shape (T,): how many rows are each frame's.
         id: Shape (R,); with room behind them, as the rest.
         xy_m: Shape (R, 2).
-        covariance_m2: Shape (R, 2, 2).
+        covariance_m2: Shape (R, 2, 2), with what lasts, as `Tracks.covariance`.
         raised: Shape (R,).
     """
 
@@ -74,10 +75,9 @@ def track_sensed(stamps_ns: IntArray, sensed: SensedFrames, config: Config) -> T
         config: The tracker's parameters.
     """
     dt_s = np.diff(stamps_ns, prepend=stamps_ns[:1]) / 1e9
-    of_claim = np.repeat(dt_s, np.diff(sensed.begins))
     given = Given(
         frozen(stamps_ns, COUNTS),
-        claims_of(sensed.measurements, of_claim, config),
+        claims_of(sensed.measurements),
         frozen(sensed.begins, COUNTS),
         sealed(dt_s),
         _views(sensed.poses, sensed.field_of_view_rad),
@@ -129,6 +129,7 @@ def _between(claims: Claims, begin: int, end: int) -> Claims:
         claims.values[begin:end], claims.noise[begin:end], claims.kind[begin:end],
         claims.pose[begin:end], claims.doubt[begin:end], claims.raised[begin:end],
         claims.body[begin:end], claims.hand[begin:end], claims.tag[begin:end],
+        claims.bias[begin:end],
     )  # fmt: skip
 
 
@@ -144,6 +145,8 @@ def _write_customers(now: Frame, rows: TrackRows, begin: int) -> int:
                 rows.xy_m[row, i] = now.mean[0, person, i]
                 for j in range(2):
                     rows.covariance_m2[row, i, j] = now.covariance[0, person, i, j]
+            for item, i, j in BIAS:
+                rows.covariance_m2[row, i, j] += people.spans[item, person]
             row += 1
     return row - begin
 

@@ -87,6 +87,6 @@ def test_what_the_assignment_takes_is_what_moves_the_tracks():
 
 def test_where_nobody_watches_there_is_nothing_to_read():
     people = room_for(1, 3, 5)
-    claims = claims_of(hand(0.0, 2.0), 0.1, PLAIN)
+    claims = claims_of(hand(0.0, 2.0))
     for trace in (NO_TRACE, Trace.room(1, 1, 3)):
         assert list(rounds_of(Watched(0, people, claims, trace, PLAIN))) == []

@@ -74,7 +74,7 @@ def test_a_linear_sensor_s_innovations_are_white_and_of_the_claimed_size():
     nis, white = [], []
     for truth in drawn.truth:
         xy = truth[:, :2] + rng.standard_normal((trials, 2)) @ np.sqrt(noise)
-        claims = claims_of(Measurements.cartesian(xy, noise), 0.1, Config())
+        claims = claims_of(Measurements.cartesian(xy, noise))
         for row in range(trials):
             carry(mean, covariance, 0, row, motion, mean, covariance)
         innovation, spread = xy - mean[0, :, :2], covariance[0, :, :2, :2] + noise

@@ -33,7 +33,7 @@ def check_same(one, other, **tolerance):
 @pytest.mark.parametrize("name", ["people", "crowd", "hands-down", "rough"])
 def test_a_trial_in_one_loop_is_the_tracker_frame_by_frame(name):
     scenario = short(name)
-    config = default_config(scenario).replace(hand_bias_duration_s=1.0)
+    config = default_config(scenario)
     frames = run_steps(people_steps(scenario, config, 5, 0), config)
     check_same(tracked(scenario, config), TrackFrames.of(list(frames)), rtol=0, atol=1e-9)
 

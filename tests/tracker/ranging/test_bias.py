@@ -1,0 +1,27 @@
+"""What lasts of the error of a place lies along and across the line of sight."""
+
+import numpy as np
+import pytest
+
+from tracker import Config
+from tracker.ranging.bias import bias_covariance
+
+WELL_MOUNTED = Config(mounting_std_deg=0.0)
+
+
+def test_it_turns_with_the_line_of_sight():
+    ahead, aside = bias_covariance(
+        np.array([0.0, np.pi / 2]), np.array([3.0, 3.0]), WELL_MOUNTED, along_m=0.3, across_m=0.1
+    )
+    assert ahead == pytest.approx(np.diag([0.09, 0.01]))
+    assert aside == pytest.approx(np.diag([0.01, 0.09]))
+
+
+def test_a_yaw_that_is_hardly_known_tells_far_off():
+    config = WELL_MOUNTED.replace(mounting_std_deg=1.0)
+    near, far = bias_covariance(
+        np.zeros(2), np.array([1.0, 5.0]), config, along_m=0.0, across_m=0.0
+    )
+    assert np.sqrt(near[1, 1]) == pytest.approx(np.deg2rad(1.0))
+    assert np.sqrt(far[1, 1]) == pytest.approx(5.0 * np.deg2rad(1.0))
+    assert far[0, 0] == pytest.approx(0.0)

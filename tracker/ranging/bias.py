@@ -1,0 +1,40 @@
+"""What lasts of a place's error? Legs beside the torso, a hand beside the body, a wrong yaw."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.config import Config
+from tracker.containers import FloatArray
+
+
+def bias_covariance(
+    heading_rad: FloatArray,
+    range_m: FloatArray,
+    config: Config,
+    *,
+    along_m: FloatArray | float,
+    across_m: FloatArray | float,
+) -> FloatArray:
+    """Covariance of what all measurements of a person have in common, in the fixed frame.
+
+    Args:
+        heading_rad: Shape (M,): of the lines of sight, in the fixed frame.
+        range_m: Shape (M,).
+        config: `mounting_std_deg`.
+        along_m: Standard deviation along the line of sight, of the person's own build or pose.
+        across_m: The same across it.
+
+    Returns:
+        Shape (M, 2, 2), in square meters.
+    """
+    turned_m = np.deg2rad(config.mounting_std_deg) * range_m
+    sight = np.stack([np.cos(heading_rad), np.sin(heading_rad)], axis=-1)
+    left = np.stack([-sight[:, 1], sight[:, 0]], axis=-1)
+    parts = ((along_m, sight), (across_m, left), (turned_m, left))
+    return np.asarray(
+        sum(
+            np.reshape(std_m, (-1, 1, 1)) ** 2 * each[:, :, None] * each[:, None]
+            for std_m, each in parts
+        )
+    )
