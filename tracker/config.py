@@ -171,6 +171,23 @@ class Config(BaseModel):
         unit="s", group="frames", live=True, ge=0.0, le=5.0,
     )  # fmt: skip
 
+    camera_stamp_offset_s: float = _parameter(
+        0.0, "How late the camera's stamps are: what a picture shows happened so long before its "
+        "stamp. Negative where the stamps are early. The camera is looked up at the time that is "
+        "shown; notebook 03 estimates it.",
+        unit="s", group="frames", live=True, ge=-1.0, le=1.0,
+    )  # fmt: skip
+    scan_stamp_offset_s: float = _parameter(
+        0.0, "How late the laser's stamps are, as `camera_stamp_offset_s`.",
+        unit="s", group="frames", live=True, ge=-1.0, le=1.0,
+    )  # fmt: skip
+    stamp_std_s: float = _parameter(
+        0.02, "How well both offsets of the stamps are known, as standard deviation (guess). "
+        "While the robot turns or drives it is part of the sensors' pose and of the published "
+        "covariance.",
+        unit="s", group="frames", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+
     # Perception.
     raise_rule: Literal["evidence", "palm", "image"] = _parameter(
         "evidence", "When is a hand up? evidence: hand, arm, body and movement are weighed, at "

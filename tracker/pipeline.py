@@ -9,6 +9,7 @@ the data's own: nothing here reads a clock.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult, LocatedScan, OccupancyGrid, Scan
 from tracker.geometry import RigidTransform
-from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan
+from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan, shown_ns
 from tracker.notes import Note, NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.perception.upright import Turn, upright_turn
@@ -130,7 +131,8 @@ class Pipeline:
     def add_scan(self, scan: Scan) -> None:
         """Take in one scan."""
         scan, self._scan_notes = mend_scan(scan)
-        self.room.add_scan(scan)
+        stamp_ns = shown_ns(scan.stamp_ns, self.config.scan_stamp_offset_s)
+        self.room.add_scan(replace(scan, stamp_ns=stamp_ns))
 
     def set_camera(self, camera: CameraModel) -> None:
         """Take in calibrated intrinsics, unless `use_camera_info` is off."""
@@ -176,7 +178,8 @@ class Pipeline:
         if now_ns is None or abs(now_ns - image.since_ns) >= _ns(self.config.transform_wait_s):
             return True
         frame = self.config.camera_frame or image.frame_id
-        return self.transforms.can_lookup(self.config.fixed_frame, frame, image.stamp_ns)
+        stamp_ns = shown_ns(image.stamp_ns, self.config.camera_stamp_offset_s)
+        return self.transforms.can_lookup(self.config.fixed_frame, frame, stamp_ns)
 
     def process(self, image: CameraImage) -> FrameResult:
         """The way of one frame, now.
@@ -200,12 +203,13 @@ class Pipeline:
         self._size = size
         if image.remark:
             self._note(NoteKind.BIT_DEPTH_GUESSED, image.remark)
-        place = self._locate_camera(image)
+        stamp_ns = shown_ns(image.stamp_ns, self.config.camera_stamp_offset_s)
+        place = self._locate_camera(image, stamp_ns)
         fixed_from_camera = place.fixed_from_camera
         scan, scan_notes = choose_scan(
-            self.room.scans_by_age(image.stamp_ns),
+            self.room.scans_by_age(stamp_ns),
             self.transforms,
-            image.stamp_ns,
+            stamp_ns,
             place,
             self.config,
         )
@@ -232,6 +236,7 @@ class Pipeline:
             sustain=scan is not None and scan.stamp_ns > self._sustained_ns,
             background=self._background if self.config.background_after_s > 0.0 else None,
             people=people,
+            motion=place.motion,
         )
         beyond = len(hands) - np.count_nonzero(measurements.hand >= 0)
         if beyond:
@@ -312,11 +317,9 @@ class Pipeline:
         self._forget()
         self.room.forget_scans_after(stamp_ns)
 
-    def _locate_camera(self, image: CameraImage) -> CameraPlace:
+    def _locate_camera(self, image: CameraImage, stamp_ns: int) -> CameraPlace:
         """Where the camera is; tracks follow when the fixed frame is another, or was lost."""
-        place = self._camera_locator.locate(
-            self.transforms, image.stamp_ns, image.frame_id, self.config
-        )
+        place = self._camera_locator.locate(self.transforms, stamp_ns, image.frame_id, self.config)
         if place.missing:
             self._note(NoteKind.NO_POSE, f"no pose: {place.missing}")
         if place.is_first and self.tracker.has_tracks:

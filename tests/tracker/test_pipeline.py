@@ -107,6 +107,38 @@ def test_a_turning_robot_sees_a_standing_person_stand():
     assert len(result.tracks) == 1
 
 
+@pytest.mark.parametrize("late_s", [0.06, -0.06])
+def test_sensors_whose_stamps_are_late_or_early_are_looked_up_when_they_looked(late_s):
+    """The robot turns by 1 rad/s on its place, before somebody 3 m away who stands still."""
+
+    def seen(config):
+        pipeline, turn = Pipeline(config, SeenHands((320, 100))), 1.0
+        pipeline.add_transform(static("base_link", "camera_link"))
+        pipeline.add_transform(static("base_link", "laser"))
+        for number in range(-30, 61):
+            pose = RigidTransform.from_planar(0.0, 0.0, turn * number / 50 - 0.3)
+            stamp_ns = START_NS + number * PERIOD_NS // 5
+            pipeline.add_transform(StampedTransform(stamp_ns, "map", "base_link", pose))
+        for number in range(8):
+            yaw = turn * (number / 10 - late_s) - 0.3
+            pipeline.detector.wrists_px = ((320 + 460 * np.tan(yaw), 100),)
+            there = 3.0 * np.cos(yaw), -3.0 * np.sin(yaw)
+            result = play(
+                pipeline, 1, START_NS + number * PERIOD_NS, lambda at: person_scan(at, *there)
+            )[0]
+        return result
+
+    ideal = Config(camera_stamp_offset_s=late_s, scan_stamp_offset_s=late_s)
+    aware, naive = seen(ideal), seen(Config())
+    assert aware.tracks.mean[0, 1] == pytest.approx(0.0, abs=0.03)
+    assert abs(naive.tracks.mean[0, 1]) > 0.1
+    # What 20 ms make of 1 rad/s at 3 m is in the published covariance.
+    sure = seen(ideal.replace(stamp_std_s=0.0))
+    wider = (aware.tracks.covariance - sure.tracks.covariance)[0]
+    assert np.sqrt(wider[1, 1]) == pytest.approx(0.02 * 3.0, rel=0.15)
+    assert aware.measurements.sensor_pose_covariance[0, 2, 2] == pytest.approx(0.02**2)
+
+
 def test_hand_raised_needs_no_lidar_and_gives_no_pose_then(located):
     result = play(located, 4, scan=None)[-1]
     assert result.hand_raised

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from tracker.config import Config
 from tracker.containers import FloatArray
 from tracker.errors import TransformError
-from tracker.geometry import RigidTransform, euler_to_quaternion
+from tracker.geometry import RigidTransform, euler_to_quaternion, normalize_angle
 from tracker.ranging import body_pose
 from tracker.transforms import Transforms
+
+#: The camera's motion is told by its poses so long before and after (guess: odometry at 20 Hz).
+_HALF_NS = 50_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,6 +27,8 @@ class CameraPlace:
             camera's; None where that is unknown.
         missing: Why it is not located; empty where it is.
         is_first: The first place after images without any.
+        motion: Shape (3,): x_mps, y_mps, yaw_radps of the camera in the fixed frame, from
+            transforms around the stamp; zeros where they do not tell.
         moved: Shape (3,): x_m, y_m, yaw_rad that the camera has moved by since it was supposed to
             stand still; None where it was located all the time.
         unseen_s: In which time.
@@ -33,6 +38,7 @@ class CameraPlace:
     frame_id: str | None
     missing: str = ""
     is_first: bool = False
+    motion: FloatArray = field(default_factory=lambda: np.zeros(3))
     moved: FloatArray | None = None
     unseen_s: float = 0.0
 
@@ -64,7 +70,7 @@ class CameraLocator:
 
         Args:
             transforms: Where frames were.
-            stamp_ns: Of the image.
+            stamp_ns: Of what the image shows; `shown_ns`.
             frame_id: Of the image; `camera_frame` wins over it.
             config: The frames group.
         """
@@ -81,6 +87,7 @@ class CameraLocator:
             pose,
             config.fixed_frame,
             is_first=before is None,
+            motion=_motion(transforms, stamp_ns, frame, pose, config),
             moved=(pose @ before.inverse()).planar
             if before is not None and was_supposed
             else None,
@@ -96,6 +103,35 @@ class CameraLocator:
         # Places in a frame with optical axes, or on its side, would be read wrongly.
         is_plain = pose == unmoved == body_pose(unmoved, frame, config.camera_axes)
         return CameraPlace(pose, frame if is_plain else None, missing)
+
+
+def shown_ns(stamp_ns: int, offset_s: float) -> int:
+    """When that happened which a sensor shows whose stamps are so late; never before 0."""
+    return max(stamp_ns - round(offset_s * 1e9), 0)
+
+
+def _motion(
+    transforms: Transforms, stamp_ns: int, frame: str, pose: RigidTransform, config: Config
+) -> FloatArray:
+    """Shape (3,): x_mps, y_mps, yaw_radps of the camera, over half an interval at least."""
+    ends = [(0, pose.planar)]
+    for away_ns in (-_HALF_NS, _HALF_NS):
+        try:
+            found = transforms.lookup(config.fixed_frame, frame, stamp_ns + away_ns)
+        except TransformError:  # the next transform has mostly not come yet
+            continue
+        turned = mounted(body_pose(found, frame, config.camera_axes), config)
+        ends.append((away_ns, turned.planar))
+    (begin_ns, begin), (end_ns, end) = min(ends, key=_time), max(ends, key=_time)
+    if begin_ns == end_ns:
+        return np.zeros(3)
+    way = end - begin
+    way[2] = normalize_angle(way[2])
+    return np.asarray(way / ((end_ns - begin_ns) / 1e9))
+
+
+def _time(end: tuple[int, FloatArray]) -> int:
+    return end[0]
 
 
 def mounted(target_from_camera: RigidTransform, config: Config) -> RigidTransform:

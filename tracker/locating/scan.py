@@ -36,7 +36,7 @@ def choose_scan(
     Args:
         scans: Those that have come, the nearest first.
         transforms: Where frames were.
-        stamp_ns: Of the image.
+        stamp_ns: Of what the image shows.
         camera: Where that was taken; without transforms the laser is beside it.
         config: The frames and the ranging group.
 

@@ -1,4 +1,12 @@
-"""What lasts of a place's error? Legs beside the torso, a hand beside the body, a wrong yaw."""
+"""What lasts of a place's error? Legs beside the torso, a hand beside the body, yaw and stamps.
+
+Sensors that move with velocity v and turn rate w, and whose stamps are late by t, show a place at
+d from them as if it were shifted by t u, with
+
+    u = v + w (-d_y, d_x).
+
+How people walk meanwhile is left out: at 1 m/s and 20 ms that is 2 cm.
+"""
 
 from __future__ import annotations
 
@@ -15,15 +23,17 @@ def bias_covariance(
     *,
     along_m: FloatArray | float,
     across_m: FloatArray | float,
+    motion: FloatArray,
 ) -> FloatArray:
     """Covariance of what all measurements of a person have in common, in the fixed frame.
 
     Args:
         heading_rad: Shape (M,): of the lines of sight, in the fixed frame.
         range_m: Shape (M,).
-        config: `mounting_std_deg`.
+        config: `mounting_std_deg` and `stamp_std_s`.
         along_m: Standard deviation along the line of sight, of the person's own build or pose.
         across_m: The same across it.
+        motion: Shape (3,): x_mps, y_mps, yaw_radps of the sensors in the fixed frame.
 
     Returns:
         Shape (M, 2, 2), in square meters.
@@ -31,7 +41,13 @@ def bias_covariance(
     turned_m = np.deg2rad(config.mounting_std_deg) * range_m
     sight = np.stack([np.cos(heading_rad), np.sin(heading_rad)], axis=-1)
     left = np.stack([-sight[:, 1], sight[:, 0]], axis=-1)
-    parts = ((along_m, sight), (across_m, left), (turned_m, left))
+    shift = motion[:2] + motion[2] * range_m[:, None] * left
+    parts = (
+        (along_m, sight),
+        (across_m, left),
+        (turned_m, left),
+        (config.stamp_std_s, shift),
+    )
     return np.asarray(
         sum(
             np.reshape(std_m, (-1, 1, 1)) ** 2 * each[:, :, None] * each[:, None]

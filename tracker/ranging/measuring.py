@@ -23,6 +23,7 @@ _RANGE_MIN_M = 0.05
 #: What the map says to be furniture with more than these log-odds sustains nobody, and owns a hand
 #: only where nobody else fits it (guess).
 _MAPPED_LOG_ODDS = 2.0
+_STILL = np.zeros(3)
 #: Numbers of picture pairs (`Measurements.person`) start here, above any cluster's row.
 _PAIR_OFFSET = 1_000_000
 
@@ -37,6 +38,7 @@ def measure_people(
     sustain: bool = True,
     background: Background | None = None,
     people: PersonClusters | None = None,
+    motion: FloatArray = _STILL,
 ) -> Measurements:
     """Turn one image's hands and the scan beside it into measurements in the fixed frame.
 
@@ -52,6 +54,7 @@ def measure_people(
         background: What has been learnt of the room so far, and learns from this scan; None takes
             whatever is person-sized for a person.
         people: From `scan_people`, where that has been asked already.
+        motion: Shape (3,): x_mps, y_mps, yaw_radps of camera and laser in the fixed frame.
 
     Returns:
         First one row for each hand whose direction is known, then the clusters that no hand has
@@ -78,12 +81,13 @@ def measure_people(
 
     seen = claimed >= 0
     alone = np.flatnonzero(~seen & np.isfinite(rays.bearing_rad))
-    from_hands = _hand_measurements(alone, rays, range_m, hands, pair, config)
+    from_hands = _hand_measurements(alone, rays, range_m, hands, pair, motion, config)
     if seen.any():
         # The body itself is measured: the ray has only said which of them it is.
         of_bodies = _body_measurements(
             people.xy_m[claimed[seen]],
             rays.origin,
+            motion,
             config,
             raised=hands.raised[seen],
             person=claimed[seen],
@@ -98,7 +102,7 @@ def measure_people(
     # Whom a hand stands for, up or not, is not measured twice: the second would be a twin.
     free = np.setdiff1d(np.flatnonzero(~is_background), claimed[seen])
     from_scan = _body_measurements(
-        people.xy_m[free], rays.origin, config, raised=False, person=free, hand=-1
+        people.xy_m[free], rays.origin, motion, config, raised=False, person=free, hand=-1
     )
     return Measurements.concatenate(from_hands, from_scan)
 
@@ -125,6 +129,7 @@ def _hand_measurements(
     range_m: FloatArray,
     hands: Hands,
     pair: IntArray,
+    motion: FloatArray,
     config: Config,
 ) -> Measurements:
     """The hand's own ray; the body stands somewhere beside it, closer to that of its torso."""
@@ -138,6 +143,7 @@ def _hand_measurements(
         config,
         along_m=config.torso_offset_std_m,
         across_m=offset_m[rows],
+        motion=motion,
     )
     return Measurements.polar(
         rays.bearing_rad[rows],
@@ -148,6 +154,7 @@ def _hand_measurements(
         raised=hands.raised[rows],
         person=pair[rows],
         hand=rows,
+        sensor_pose_covariance=_pose_covariance(motion, config),
         bias_covariance=bias,
         refuse="drop",
     )
@@ -156,6 +163,7 @@ def _hand_measurements(
 def _body_measurements(
     xy_m: FloatArray,
     origin: FloatArray,
+    motion: FloatArray,
     config: Config,
     *,
     raised: BoolArray | bool,
@@ -167,7 +175,9 @@ def _body_measurements(
     range_m = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), _RANGE_MIN_M)
     heading = np.arctan2(offset[:, 1], offset[:, 0])
     offset_m = config.torso_offset_std_m
-    bias = bias_covariance(heading, range_m, config, along_m=offset_m, across_m=offset_m)
+    bias = bias_covariance(
+        heading, range_m, config, along_m=offset_m, across_m=offset_m, motion=motion
+    )
     return Measurements.polar(
         normalize_angle(heading - origin[2]),
         range_m,
@@ -177,9 +187,16 @@ def _body_measurements(
         raised=raised,
         person=person,
         hand=hand,
+        sensor_pose_covariance=_pose_covariance(motion, config),
         bias_covariance=bias,
         refuse="drop",
     )
+
+
+def _pose_covariance(motion: FloatArray, config: Config) -> FloatArray | None:
+    """Shape (3, 3): how wrong stamps move the sensors; the same for both, which go together."""
+    moved = config.stamp_std_s * motion
+    return np.outer(moved, moved) if moved.any() else None
 
 
 def body_bearing_std_rad(range_m: FloatArray, std_m: float) -> FloatArray:

@@ -57,5 +57,6 @@ def restate(
         config,
         along_m=body_m,
         across_m=np.where(alone, config.hand_offset_std_m, body_m),
+        motion=np.zeros(3),
     )
     return replace(measurements, covariance=noise, bias_covariance=bias)
