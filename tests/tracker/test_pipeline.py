@@ -1,4 +1,5 @@
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -122,10 +123,8 @@ def test_sensors_whose_stamps_are_late_or_early_are_looked_up_when_they_looked(l
         for number in range(8):
             yaw = turn * (number / 10 - late_s) - 0.3
             pipeline.detector.wrists_px = ((320 + 460 * np.tan(yaw), 100),)
-            there = 3.0 * np.cos(yaw), -3.0 * np.sin(yaw)
-            result = play(
-                pipeline, 1, START_NS + number * PERIOD_NS, lambda at: person_scan(at, *there)
-            )[0]
+            scan = partial(person_scan, x=3.0 * np.cos(yaw), y=-3.0 * np.sin(yaw))
+            result = play(pipeline, 1, START_NS + number * PERIOD_NS, scan)[0]
         return result
 
     ideal = Config(camera_stamp_offset_s=late_s, scan_stamp_offset_s=late_s)

@@ -26,6 +26,9 @@ from tracker.simulation.stream import map_from_camera, map_from_laser
 from tracker.tracking.trace import Watch
 from tracker.transforms import StampedTransform
 
+#: As a robot tells its odometry; it is told so far ahead.
+_TRANSFORM_S, _AHEAD_S = 0.02, 0.3
+
 
 def scan_trial(scenario: ScanScenario, config: Config, seed: int, trial: int) -> dict[str, float]:
     """Run one trial through a pipeline of its own.
@@ -80,8 +83,9 @@ def play_scene(
     rng: np.random.Generator,
     believed: Scene | None = None,
     watch: Watch | None = None,
+    late_s: tuple[float, float] = (0.0, 0.0),
 ) -> Iterator[tuple[Truth, FrameResult]]:
-    """Play a scene of one's own, whose robot stands still.
+    """Play a scene of one's own.
 
     Args:
         scenario: Its rate, duration, and the noise of hands.
@@ -91,48 +95,68 @@ def play_scene(
         believed: Whose mountings of camera and laser the transforms tell; the scene's own where
             None.
         watch: Passed on to the tracker.
+        late_s: How late the stamps of camera and laser are: they show what was before.
 
     Yields:
         What is true and what the pipeline makes of it, frame by frame.
     """
     believed = scene if believed is None else believed
     camera = scene.camera
-    view = Viewpoint.of(camera, map_from_camera(scene, 0.0))
-    detector = _ShownHands(scenario, scene, view, rng)
+    detector = _ShownHands(scenario, scene, rng)
     pipeline = Pipeline(config, detector, watch=watch)
     pipeline.set_camera(CameraModel(camera.fx, camera.fy, camera.cx, camera.cy))
     start_ns = scene.start_s * 1_000_000_000
-    for frame, pose in [
-        (camera.frame, map_from_camera(believed, 0.0)),
-        (scene.laser.frame, map_from_laser(believed, 0.0)),
-    ]:
-        pipeline.add_transform(
-            StampedTransform(start_ns, config.fixed_frame, frame, pose, is_static=True)
-        )
     if scenario.map_known:
         pipeline.set_map(floor_map(scene))
+    told_s = -_AHEAD_S
     scanner = ScanSimulator(scene, rng)
     nothing = np.zeros((camera.height, camera.width, 3), np.uint8)
     for number in range(round(scenario.duration_s * scenario.rate_hz)):
         time_s = number / scenario.rate_hz
         stamp_ns = start_ns + round(time_s * 1e9)
-        people = people_at(scene, time_s)
-        in_view = hands_in_view(scene, view, people)
-        detector.people, detector.in_view = people, in_view
-        pipeline.add_scan(scanner.scan(stamp_ns, map_from_laser(scene, time_s), people))
+        shown_s, scanned_s = (max(time_s - each, 0.0) for each in late_s)
+        detector.look(shown_s)
+        for sample in _transforms(believed, told_s, time_s + _AHEAD_S, config.fixed_frame):
+            pipeline.add_transform(sample)
+        told_s = time_s + _AHEAD_S
+        scan = scanner.scan(
+            stamp_ns, map_from_laser(scene, scanned_s), people_at(scene, scanned_s)
+        )
+        pipeline.add_scan(scan)
         result = pipeline.process(CameraImage(stamp_ns, camera.frame, nothing))
+        people = people_at(scene, time_s)
+        in_view = detector.in_view
         yield Truth(stamp_ns, people.id, people.xy_m, people.hand_up, in_view), result
+
+
+def _transforms(
+    scene: Scene, from_s: float, until_s: float, fixed_frame: str
+) -> Iterator[StampedTransform]:
+    """Camera and laser in the fixed frame for a while; once for all where the robot stands."""
+    moves = len(scene.robot.path) > 1
+    if not moves and from_s >= 0.0:
+        return
+    for at_s in np.arange(from_s, until_s, _TRANSFORM_S) if moves else [0.0]:
+        stamp_ns = scene.start_s * 1_000_000_000 + round(at_s * 1e9)
+        for frame, pose in (
+            (scene.camera.frame, map_from_camera(scene, at_s)),
+            (scene.laser.frame, map_from_laser(scene, at_s)),
+        ):
+            yield StampedTransform(stamp_ns, fixed_frame, frame, pose, is_static=not moves)
 
 
 class _ShownHands:
     """Stands in for the hand models: it is told who is there, and looks at no picture."""
 
-    def __init__(
-        self, scenario: ScanScenario, scene: Scene, view: Viewpoint, rng: np.random.Generator
-    ) -> None:
-        self._scenario, self._scene, self._view, self._rng = scenario, scene, view, rng
-        self.people = people_at(scene, 0.0)
-        self.in_view = hands_in_view(scene, view, self.people)
+    def __init__(self, scenario: ScanScenario, scene: Scene, rng: np.random.Generator) -> None:
+        self._scenario, self._scene, self._rng = scenario, scene, rng
+        self.look(0.0)
+
+    def look(self, time_s: float) -> None:
+        """What the next picture shows."""
+        self.people = people_at(self._scene, time_s)
+        self._view = Viewpoint.of(self._scene.camera, map_from_camera(self._scene, time_s))
+        self.in_view = hands_in_view(self._scene, self._view, self.people)
 
     def find(self, image: CameraImage) -> Hands:
         return show_hands(

@@ -1,4 +1,4 @@
-"""Where do sightings come from? A recording, or a simulated room whose camera is mounted askew."""
+"""Where do sightings come from? A recording, or a simulated room with wrong mounts and stamps."""
 
 from __future__ import annotations
 
@@ -12,15 +12,28 @@ from tracker.evaluation.trials.scan_trial import play_scene
 from tracker.evaluation.trials.scenario import ScanScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.evaluation.tuning.sightings import Sightings, sightings_of
+from tracker.evaluation.tuning.stamp_offset import Headings, headings_of
 from tracker.geometry import RigidTransform
+from tracker.locating import shown_ns
 from tracker.perception.detector import HandDetector
 from tracker.pipeline import Pipeline
 from tracker.ranging.rays import body_pose
 from tracker.recording import Topics
 from tracker.simulation.restaurant import draw_restaurant
-from tracker.simulation.scene import Camera
+from tracker.simulation.scene import Camera, DrivePoint, Robot
 from tracker.simulation.stream import map_from_camera, map_from_laser
 
+#: People who stand and keep calling, for a robot that turns.
+STANDING = ScanScenario(
+    title="Three people stand about and call every few seconds.",
+    duration_s=60.0,
+    people=(3, 3),
+    sitting_share=0.0,
+    pause_s=1e5,
+    hand_up_s=(4.0, 8.0),
+    hand_down_s=(1.0, 3.0),
+)
+_SWAY_S = 1.6
 #: People who walk about and keep calling: what one would ask volunteers for.
 CALLERS = ScanScenario(
     title="Three people walk about and call every few seconds.",
@@ -41,11 +54,15 @@ class Mounted:
         sightings: Hands and bodies.
         laser_from_camera: The camera with body axes in the laser's frame, as transforms tell.
         camera: Intrinsics.
+        hand_headings: Who called, as the camera saw it.
+        body_headings: The same people, as the laser saw them.
     """
 
     sightings: Sightings
     laser_from_camera: RigidTransform
     camera: CameraModel
+    hand_headings: Headings
+    body_headings: Headings
 
 
 def recorded_sightings(
@@ -70,16 +87,18 @@ def recorded_sightings(
     pipeline = Pipeline(config, detector)
     config = pipeline.config
     frame, axes = config.camera_frame, config.camera_axes
-    parts, mounting = [], RigidTransform()
+    parts, headings, mounting = [], [], RigidTransform()
     for result in recorded_frames(source, pipeline, topics=topics):
         if result.sensor_pose is None or result.scan is None:
             continue  # nobody knows where the camera was
-        looked_up = pipeline.transforms.lookup(config.fixed_frame, frame, result.stamp_ns)
+        stamp_ns = shown_ns(result.stamp_ns, config.camera_stamp_offset_s)
+        looked_up = pipeline.transforms.lookup(config.fixed_frame, frame, stamp_ns)
         pose = body_pose(looked_up, frame, axes)
         parts.append(sightings_of(result, pipeline.camera, pose, config))
-        looked_up = pipeline.transforms.lookup(result.scan.frame_id, frame, result.stamp_ns)
+        headings.append(headings_of(result, pipeline.camera, pose, config))
+        looked_up = pipeline.transforms.lookup(result.scan.frame_id, frame, stamp_ns)
         mounting = body_pose(looked_up, frame, axes)
-    return Mounted(Sightings.concatenate(parts), mounting, pipeline.camera)
+    return _mounted(parts, headings, mounting, pipeline.camera)
 
 
 def simulated_sightings(
@@ -88,6 +107,9 @@ def simulated_sightings(
     seed: int = 1,
     scenario: ScanScenario = CALLERS,
     config: Config | None = None,
+    *,
+    late_s: tuple[float, float] = (0.0, 0.0),
+    turns: bool = False,
 ) -> Mounted:
     """The same of a room drawn at random.
 
@@ -97,6 +119,8 @@ def simulated_sightings(
         seed: Of the room, the people and all noise.
         scenario: What people do.
         config: Every parameter.
+        late_s: How late the stamps of camera and laser are.
+        turns: The robot turns to and fro on its place, by up to 1 rad/s.
     """
     config, rng = config or Config(), trial_rng(seed, 0)
     scene = draw_restaurant(
@@ -109,6 +133,8 @@ def simulated_sightings(
         hand_up_s=scenario.hand_up_s,
         hand_down_s=scenario.hand_down_s,
     )
+    if turns:
+        scene = scene.model_copy(update={"robot": _turning(scenario.duration_s)})
     true = scene.model_copy(update={"camera": true_camera})
     believed = scene.model_copy(update={"camera": believed_camera})
     model = CameraModel(
@@ -119,10 +145,36 @@ def simulated_sightings(
         width=true_camera.width,
         height=true_camera.height,
     )
-    map_from_believed = map_from_camera(believed, 0.0)
-    parts = [
-        sightings_of(result, model, map_from_believed, config)
-        for _, result in play_scene(scenario, true, config, rng, believed)
+    parts, headings = [], []
+    for _, result in play_scene(scenario, true, config, rng, believed, late_s=late_s):
+        at_s = (result.stamp_ns - scene.start_s * 1_000_000_000) / 1e9
+        pose = map_from_camera(believed, at_s - config.camera_stamp_offset_s)
+        parts.append(sightings_of(result, model, pose, config))
+        headings.append(headings_of(result, model, pose, config))
+    mounting = map_from_laser(scene, 0.0).inverse() @ map_from_camera(believed, 0.0)
+    return _mounted(parts, headings, mounting, model)
+
+
+def _turning(duration_s: float) -> Robot:
+    """To and fro by 60 degrees in 1.6 s each."""
+    path = [
+        DrivePoint(at_s=number * _SWAY_S, yaw_deg=30.0 * (-1.0) ** number)
+        for number in range(int(duration_s / _SWAY_S) + 2)
     ]
-    laser_from_camera = map_from_laser(scene, 0.0).inverse() @ map_from_believed
-    return Mounted(Sightings.concatenate(parts), laser_from_camera, model)
+    return Robot(path=tuple(path))
+
+
+def _mounted(
+    parts: list[Sightings],
+    headings: list[tuple[Headings, Headings]],
+    mounting: RigidTransform,
+    camera: CameraModel,
+) -> Mounted:
+    hands, bodies = zip(*headings, strict=True) if headings else ((), ())
+    return Mounted(
+        Sightings.concatenate(parts),
+        mounting,
+        camera,
+        Headings.concatenate(hands),
+        Headings.concatenate(bodies),
+    )
