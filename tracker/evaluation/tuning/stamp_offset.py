@@ -77,7 +77,7 @@ class Headings:
             return np.zeros(len(self.stamp_ns))
         at_s = (self.image_ns - self.image_ns[0]) / 1e9
         rate = np.gradient(np.unwrap(self.yaw_rad), at_s)
-        return np.interp((self.stamp_ns - self.image_ns[0]) / 1e9, at_s, rate)
+        return np.asarray(np.interp((self.stamp_ns - self.image_ns[0]) / 1e9, at_s, rate))
 
 
 @dataclass(frozen=True, slots=True)
