@@ -158,9 +158,9 @@ class CallFinder:
         raised = belief > bar
         refusal = np.where(odds > bar, Refusal.TOO_BRIEF, reasons(evidence))
         refusal = np.where((belief > 0.0) & ~raised, Refusal.ALWAYS_THERE, refusal)
-        # A look around one hand may take a neighbor for its owner: where the person is hangs on
-        # sure owners alone.
-        owner = np.where(seen.is_found, sure_owners(hands, bodies), seen.owner)
+        # A look around a hand may show a neighbor: where the person is hangs on sure owners alone.
+        owner = seen.owner.copy()
+        owner[seen.is_found] = sure_owners(hands[seen.is_found], bodies)
         torso_px = np.full((len(hands), 2), np.nan)
         torso_px[owner >= 0] = bodies.torso_px[owner[owner >= 0]]
         return replace(

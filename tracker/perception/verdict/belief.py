@@ -19,7 +19,7 @@ STILL_UP_MIN, NOT_UP_MAX = -0.5, 0.75
 
 
 def update_belief(
-    before: float, passed_s: float, evidence: float, high_shoulders: float = float("nan")
+    before: float, passed_s: float, evidence: float, high_shoulders: float = np.nan
 ) -> float:
     """The log-odds that a hand calls, after one more image.
 

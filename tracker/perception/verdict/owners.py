@@ -20,8 +20,6 @@ _OTHER_SIDE_SHOULDERS = 0.4
 #: How long an own hand may be, in widths of the shoulders: drawn callers' measure 0.3 to 0.9, more
 #: if held to the camera, and less if closed. Neighbors much nearer or farther do not fit (guess).
 _OWN_HAND_SHOULDERS = (0.18, 1.2)
-
-
 #: An open hand in lengths of its palm, wrist to middle finger's root.
 _OPEN_PALMS = 1.9
 
@@ -78,8 +76,10 @@ def sure_owners(hands: Hands, bodies: Bodies) -> IntArray:
     if len(bodies) == 0 or len(hands) == 0:
         return owner
     wrist, misfit = (fit[np.arange(len(hands)), owner] for fit in _wrist_misfits(hands, bodies))
-    is_other_side = misfit > wrist + _OTHER_SIDE_SHOULDERS / 2.0
-    return np.where((wrist < _SURE_WRIST_SHOULDERS) & ~is_other_side, owner, -1)
+    is_right = hands.right > 0.5  # of two right hands on one body one is a neighbor's
+    rivals = (owner[:, None] == owner) & (is_right[:, None] == is_right)
+    has_better_rival = (rivals & (misfit < misfit[:, None])).any(axis=1)
+    return np.where((wrist < _SURE_WRIST_SHOULDERS) & ~has_better_rival, owner, -1)
 
 
 def _wrist_misfits(hands: Hands, bodies: Bodies) -> tuple[FloatArray, FloatArray]:

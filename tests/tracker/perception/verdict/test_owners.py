@@ -71,10 +71,15 @@ def test_a_right_hand_is_not_a_neighbors_left(body, upright_hand):
     assert find_owners(left, both).tolist() == sure_owners(left, both).tolist() == [0]
 
 
-def test_a_hand_on_the_wrong_side_has_an_owner_who_is_not_sure(body, upright_hand):
-    right, neighbor = upright_hand((150, 72)), body(left_wrist=(150, 70))
-    assert find_owners(right, neighbor).tolist() == [0]
-    assert sure_owners(right, neighbor).tolist() == [-1]
+def test_nobody_has_two_right_hands(body, upright_hand):
+    both_up = body(right_wrist=(150, 70), left_wrist=(250, 70))
+    hands = Hands.concatenate(upright_hand((151, 72)), upright_hand((252, 71)))
+    assert find_owners(hands, both_up).tolist() == [0, 0]
+    assert sure_owners(hands, both_up).tolist() == [0, -1]
+    left_too = replace(hands, right=np.array([1.0, 0.0]))
+    assert sure_owners(left_too, both_up).tolist() == [0, 0]
+    mirrored = replace(hands, right=np.array([0.0, 1.0]))
+    assert sure_owners(mirrored, both_up).tolist() == [0, 0]
 
 
 def test_a_fist_is_as_large_as_its_palm_says(upright_hand):
