@@ -30,6 +30,7 @@ from _contestants import begin, contestants
 from _paired import Rows, comparison, mean
 from rich.console import Console
 from rich.progress import track
+from scipy.stats import chi2
 
 from tracker import Config, Tracks
 from tracker.containers import FloatArray, IntArray, Truth
@@ -48,6 +49,7 @@ RECORDINGS = Path(__file__).parents[1] / "../shared/data/trajectories"
 REACH_M = 8.0  # of camera and laser
 SCORED_M = 7.0  # people about to leave the sensors' reach do not count
 CUTOFF_M = 1.0  # of GOSPA
+COVERED = float(chi2.ppf(0.95, 2))
 SENSORS = PeopleScenario(
     title="Real paths, simulated sensors.",
     area_m=(-REACH_M, REACH_M, -REACH_M, REACH_M),
@@ -72,6 +74,7 @@ FIGURES = {
     "gospa_m": "GOSPA, m",
     "switches_per_min": "identity switches/min",
     "nees": "NEES (ideal: 2)",
+    "covered_share": "inside the 95 % ellipse",
     "missed_share": "missed share",
     "false_tracks": "false tracks/frame",
     "gone_s": "gone: tracked, s",
@@ -197,11 +200,13 @@ class Scores:
         pairs = np.array([pair for frame in self._track_of for pair in frame.items()])
         person, track_id = pairs.reshape(-1, 2).T
         left = list(self._left())
+        nees = np.concatenate(self._nees)
         minutes = (self._stamps_ns[-1] - self._stamps_ns[0]) / 60e9
         return {
             "gospa_m": float(distance.mean()),
             "switches_per_min": identity_switches(person, track_id) / minutes,
-            "nees": mean(np.concatenate(self._nees)),
+            "nees": mean(nees),
+            "covered_share": mean(nees <= COVERED),
             "missed_share": float(missed.sum() / people.sum()) if people.any() else np.nan,
             "false_tracks": float(false.mean()),
             "gone_s": mean([in_reach_s for in_reach_s, _, range_m in left if range_m < SCORED_M]),

@@ -158,6 +158,7 @@ def test_hands_without_21_landmarks_are_refused():
 def test_hands_know_no_torso_unless_told():
     unknown = hands(2)
     assert not unknown.is_owned.any()
+    assert np.isnan(unknown.seated).all()
     known = replace(unknown, torso_px=[(5, 6), (np.nan, 6)])
     assert known.is_owned.tolist() == [True, False]
     with pytest.raises(ShapeError, match=r"torso_px \(3, 2\)"):

@@ -28,6 +28,7 @@ _LAYOUT = {
     "raise_measure": (NUMBERS, ()),
     "torso_px": (NUMBERS, (2,)),
     "refusal": (COUNTS, ()),
+    "seated": (NUMBERS, ()),
 }
 
 
@@ -86,6 +87,8 @@ class Hands:
             that is not known. None means that of no hand.
         refusal: Shape (H,), int64: of each hand that is not raised the `Refusal`; 0 for raised
             ones, and where the detector gives no reason. None means 0 for all.
+        seated: Shape (H,), in [0, 1]: whether whose hand it is sits; NaN where that is not known.
+            None means that of no hand.
     """
 
     landmarks_px: FloatArray
@@ -95,12 +98,15 @@ class Hands:
     raise_measure: FloatArray
     torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
     refusal: IntArray = None  # type: ignore[assignment]  # 0 takes its place
+    seated: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
 
     def __post_init__(self) -> None:
         if self.torso_px is None:
             object.__setattr__(self, "torso_px", np.full((len(self.landmarks_px), 2), np.nan))
         if self.refusal is None:
             object.__setattr__(self, "refusal", np.zeros(len(self.landmarks_px), dtype=np.int64))
+        if self.seated is None:
+            object.__setattr__(self, "seated", np.full(len(self.landmarks_px), np.nan))
         check_rows(self, len(self.landmarks_px), _LAYOUT)
 
     def __len__(self) -> int:

@@ -27,6 +27,9 @@ _SAME_BODY_SHOULDERS = 0.5
 #: Of somebody who faces the camera the shoulders are about as far from the nose, one at least so
 #: much of the other (guess).
 _EVEN_SHOULDERS = 0.5
+#: How far the knees are below the hips, in lengths of the trunk: of people who stand, and of those
+#: who sit, whose thighs are level and point anywhere (guess from anthropometric tables).
+_KNEES_OF_STANDING, _KNEES_OF_SEATED = 0.75, 0.4
 #: Wrists so far below the shoulders, in their widths, are about as high.
 _ABOUT_LEVEL = 0.2
 
@@ -58,6 +61,7 @@ SHOULDERS = [Joint.LEFT_SHOULDER, Joint.RIGHT_SHOULDER]
 ELBOWS = [Joint.LEFT_ELBOW, Joint.RIGHT_ELBOW]
 WRISTS = [Joint.LEFT_WRIST, Joint.RIGHT_WRIST]
 HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
+KNEES = [Joint.LEFT_KNEE, Joint.RIGHT_KNEE]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -155,6 +159,16 @@ class Bodies(Rows):
         trunk = np.linalg.norm(hips - shoulders, axis=-1)
         wider = np.fmax(width, _SHOULDERS_PER_TRUNK * trunk)
         return np.where(wider > 0.0, wider, np.nan)
+
+    @property
+    def seated(self) -> FloatArray:
+        """Shape (P,), in [0, 1]: whether somebody sits; NaN where hips or knees are not seen."""
+        shoulders = self._shoulders_px()
+        hips, knees = self._middle_of(HIPS), self._middle_of(KNEES)
+        trunk = np.linalg.norm(hips - shoulders, axis=-1)
+        fall = (knees - hips)[:, 1] / np.where(trunk > 0.0, trunk, np.nan)
+        share = (_KNEES_OF_STANDING - fall) / (_KNEES_OF_STANDING - _KNEES_OF_SEATED)
+        return np.asarray(np.clip(share, 0.0, 1.0))
 
     def _shoulders_px(self) -> FloatArray:
         """Shape (P, 2): the middle of both shoulders, NaN where one is missing."""

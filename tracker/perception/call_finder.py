@@ -163,11 +163,14 @@ class CallFinder:
         owner[seen.is_found] = sure_owners(hands[seen.is_found], bodies)
         torso_px = np.full((len(hands), 2), np.nan)
         torso_px[owner >= 0] = bodies.torso_px[owner[owner >= 0]]
+        seated = np.full(len(hands), np.nan)
+        seated[owner >= 0] = bodies.seated[owner[owner >= 0]]
         return replace(
             hands,
             raised=raised,
             raise_measure=1.0 / (1.0 + np.exp(bar - belief)),
             torso_px=torso_px,
+            seated=seated,
             refusal=np.where(raised, Refusal.NO_REASON, refusal),
         )
 

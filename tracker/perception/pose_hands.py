@@ -113,6 +113,7 @@ def draw_hands(
         measure,
         torso,
         refusal=np.where(raised, Refusal.NO_REASON, Refusal.ARM_DOWN),
+        seated=bodies.seated[person],
     )
 
 

@@ -48,15 +48,17 @@ def show_hands(
     is_shown = in_view & people.hand_up
     is_shown &= rng.random(len(is_shown)) < detection_probability
     looks = [look_of(person) for person in scene.people]
-    shapes, right = [], []
+    shapes, right, sits = [], [], []
     for row in np.flatnonzero(is_shown).tolist():
         shape = raised_hand_landmarks(looks[row], from_behind=is_from_behind(view, people, row))
         if not _is_hidden(shape[0], row, looks, view, people):
             shapes.append(_pixels(shape, people.xy_m[row], view))
             right.append(looks[row].right_handed)
+            sits.append(float(scene.people[row].seat_m is not None))
     for place in _clutter(rng, clutter_per_frame):
         shapes.append(_pixels(raised_hand_landmarks(Look()), place, view))
         right.append(True)
+        sits.append(np.nan)
     if not shapes:
         return Hands.none()
     count = len(shapes)
@@ -70,6 +72,7 @@ def show_hands(
         right=np.where(np.array(right) == is_told, 0.9, 0.1),
         raised=np.ones(count, dtype=bool),
         raise_measure=np.full(count, _MEASURE),
+        seated=np.where(is_told, sits, np.nan),  # as often as hips and knees are seen (guess)
     )
 
 

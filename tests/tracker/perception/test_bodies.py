@@ -32,6 +32,20 @@ def test_a_shoulder_beyond_the_pictures_edge_is_where_the_model_supposes_it(body
     assert np.isnan(replace(cut_off, points_px=uneven).shoulder_px).all()
 
 
+@pytest.mark.parametrize(
+    ("fall_px", "share"), [(49, 0.0), (32, 0.51), (20, 1.0), (-5, 1.0)],
+    ids=["stands", "in between", "sits facing", "feet up"],
+)  # fmt: skip
+def test_who_has_the_knees_at_the_height_of_the_hips_sits(body, fall_px, share):
+    somebody = body(left_knee=(212, 156 + fall_px), right_knee=(188, 156 + fall_px))
+    assert somebody.seated == pytest.approx([share], abs=0.01)
+
+
+@pytest.mark.parametrize("hidden", ["left_knee", "right_hip", "left_shoulder"])
+def test_without_knees_or_hips_nobody_knows_who_sits(body, hidden):
+    assert np.isnan(body(**{hidden: None}).seated).all()
+
+
 def test_the_yardstick_is_the_width_of_the_shoulders(body):
     np.testing.assert_allclose(body().shoulder_px, [40.0])
 

@@ -105,6 +105,7 @@ def test_an_open_palm_beside_its_owners_head_calls(body, open_hand):
     answer = play(open_hand((148, 70)), body(**UP))
     assert answer.raised.tolist() == [True]
     np.testing.assert_allclose(answer.torso_px, [[200, 128]])
+    assert answer.seated.tolist() == [0.0]
 
 
 def test_a_fist_overhead_calls(body, open_hand):

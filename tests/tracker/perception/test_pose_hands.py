@@ -39,6 +39,7 @@ def test_each_wrist_is_a_hand_and_the_arm_decides(body):
     assert hands.raised.tolist() == [False, True]
     assert hands.right.tolist() == [0.0, 1.0]
     np.testing.assert_allclose(hands.torso_px, [[200, 128], [200, 128]])
+    assert hands.seated.tolist() == [0.0, 0.0]
 
 
 def test_a_wrist_that_is_not_seen_is_no_hand(body):

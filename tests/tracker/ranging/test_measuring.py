@@ -248,3 +248,25 @@ def test_a_torso_s_bearing_is_surer_than_a_wrist_s():
     expected = np.hypot(np.arctan2(config.torso_offset_std_m, config.unknown_range_m), pixel)
     assert np.sqrt(torso.covariance[0, 0, 0]) == pytest.approx(expected, rel=1e-6)
     assert torso.covariance[0, 0, 0] < wrist.covariance[0, 0, 0] / 4
+
+
+def test_who_sits_has_the_body_behind_the_shins_and_is_less_certain(cast, legs):
+    scan, hands = cast(legs(2.0, 0.3)), hands_toward((2.0, 0.0))
+    stands, sits, maybe, unknown = (
+        measure_people(replace(hands, seated=np.array([share])), CAMERA, AT_ORIGIN, scan, Config())
+        for share in (0.0, 1.0, 0.5, np.nan)
+    )
+    assert positions(unknown) == pytest.approx(positions(stands))
+    back_m = [each.values[0, 1] - stands.values[0, 1] for each in (maybe, sits)]
+    assert back_m == pytest.approx([0.05, 0.1])
+    lasting_m2 = [np.trace(each.bias_covariance[0]) for each in (stands, maybe, sits)]
+    assert sorted(lasting_m2) == lasting_m2
+    assert lasting_m2[2] > 2.0 * lasting_m2[0]
+    assert sits.covariance[0, 1, 1] > maybe.covariance[0, 1, 1] > stands.covariance[0, 1, 1]
+
+
+def test_what_lasts_of_a_hand_without_a_body_is_across_its_ray():
+    (bias,) = measure_people(
+        hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, None, Config(mounting_std_deg=0.0)
+    ).bias_covariance
+    assert np.sqrt(np.diag(bias)) == pytest.approx([0.08, 0.2], abs=1e-6)
