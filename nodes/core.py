@@ -27,6 +27,7 @@ from tracker.messages import Encoded, decode
 from tracker.notes import NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.pipeline import Pipeline
+from tracker.service import Command, Verb
 from tracker.transforms import Transforms
 from tracker.waiting import IMAGES_KEPT, WaitingImage
 
@@ -319,7 +320,7 @@ class NodeCore:
             detector.set_budget(self._budget.after(result.work, busy_share, most))
 
     def _release(self) -> None:
-        self._pipeline.tracker.selector.release()
+        self._pipeline.tracker.calls.obey(Command(Verb.RELEASE))
 
     def _reset(self, reason: str) -> None:
         self._pipeline.reset()

@@ -513,6 +513,38 @@ class Config(BaseModel):
         unit="m", group="selection", live=True, gt=0.0, le=5.0,
     )  # fmt: skip
 
+    # Who waits for service.
+    calls_wait: bool = _parameter(
+        False, "The selected customer may be one whose hand has fallen and who waits to be "
+        "served. Off: only whose hand is up is selected, as in the original node, while the "
+        "waiting list keeps calls all the same.",
+        group="service", live=True,
+    )  # fmt: skip
+    call_min_s: float = _parameter(
+        0.5, "A call is kept after the hand falls only if the hand was up for so long (guess).",
+        unit="s", group="service", live=True, ge=0.0, le=60.0,
+    )  # fmt: skip
+    call_again_after_s: float = _parameter(
+        2.0, "Who has been served, or released, calls again once the hand was down for so long "
+        "(guess).",
+        unit="s", group="service", live=True, ge=0.0, le=3600.0,
+    )  # fmt: skip
+    call_left_s: float = _parameter(
+        60.0, "Who waits is gone once the scan has seen nobody at their place for so long; time "
+        "in which the place is out of the scan's view does not count (guess).",
+        unit="s", group="service", live=True, gt=0.0, le=86400.0,
+    )  # fmt: skip
+    call_expiry_s: float = _parameter(
+        1800.0, "A call that was neither renewed nor answered by a command for so long is gone "
+        "(guess).",
+        unit="s", group="service", live=True, gt=0.0, le=86400.0,
+    )  # fmt: skip
+    place_std_m: float = _parameter(
+        0.25, "How far customers move in their places while out of sight, as standard deviation "
+        "per axis: who appears near such a place is taken for the one who was lost there (guess).",
+        unit="m", group="service", live=True, gt=0.0, le=5.0,
+    )  # fmt: skip
+
     # The nodes' own; recordings are read as they are.
     image_transport: Literal["raw", "compressed"] = _parameter(
         "raw", "How a node gets its images: raw (`image_raw`) or compressed "

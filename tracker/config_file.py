@@ -22,6 +22,7 @@ GROUP_TITLES = {
     "ranging": "Ranging: scan to distances",
     "tracking": "Tracking: measurements to customers",
     "selection": "Selection and poses",
+    "service": "Waiting list",
     "node": "The nodes",
 }
 

@@ -16,7 +16,14 @@ import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import CameraImage, FrameResult, LocatedScan, OccupancyGrid, Scan
+from tracker.containers import (
+    CameraImage,
+    FrameResult,
+    LocatedScan,
+    OccupancyGrid,
+    Scan,
+    WaitingList,
+)
 from tracker.geometry import RigidTransform
 from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan, shown_ns
 from tracker.notes import Note, NoteKind
@@ -31,7 +38,7 @@ from tracker.ranging import (
     mend_scan,
     scan_people,
 )
-from tracker.selection import approach_pose, customer_pose
+from tracker.service import approach_pose, customer_pose
 from tracker.tracking import PersonTracker, View
 from tracker.tracking.trace import Watch
 from tracker.transforms import StampedTransform, Transforms
@@ -87,6 +94,7 @@ class Pipeline:
         self._size: tuple[int, int] | None = None
         self._notes: list[Note] = []
         self._scan_notes: tuple[Note, ...] = ()
+        self._restored: WaitingList | None = None
 
     @property
     def transforms(self) -> Transforms:
@@ -205,6 +213,9 @@ class Pipeline:
             self._note(NoteKind.BIT_DEPTH_GUESSED, image.remark)
         stamp_ns = shown_ns(image.stamp_ns, self.config.camera_stamp_offset_s)
         place = self._locate_camera(image, stamp_ns)
+        if self._restored is not None and place.is_located:
+            self.tracker.restore(self._restored)
+            self._restored = None
         fixed_from_camera = place.fixed_from_camera
         scan, scan_notes = choose_scan(
             self.room.scans_by_age(stamp_ns),
@@ -273,6 +284,7 @@ class Pipeline:
             notes=tuple(self._notes),
             frame_id=place.frame_id,
             work=piecewise.work if piecewise is not None else None,
+            waiting_list=self.tracker.calls.now,
         )
 
     def configure(self, config: Config) -> None:
@@ -284,6 +296,14 @@ class Pipeline:
         self._cameras.configure(config)
         self.config = self.tracker.config = config
         self.detector.configure(config)
+
+    def restore(self, kept: WaitingList) -> None:
+        """Go on with a waiting list of another run, as soon as the camera is located.
+
+        Args:
+            kept: With places in `fixed_frame`.
+        """
+        self._restored = kept
 
     def reset(self) -> None:
         """Forget people, furniture that was learnt, scans, moving transforms, waiting images."""
@@ -314,7 +334,10 @@ class Pipeline:
         self._note(
             NoteKind.CLOCK_JUMPED, f"stamps jumped {way} by {step_s:.3f} s: tracks were reset"
         )
+        calls = self.tracker.calls.now
         self._forget()
+        if stamp_ns > last_ns:
+            self.tracker.restore(calls)
         self.room.forget_scans_after(stamp_ns)
 
     def _locate_camera(self, image: CameraImage, stamp_ns: int) -> CameraPlace:

@@ -18,7 +18,7 @@ FLOORS = [
     {"parameter_file", "retired_parameters"},
     {"containers", "config"},
     {"geometry", "config_file", "lens"},
-    {"camera", "transforms", "compiling", "selection"},
+    {"camera", "transforms", "compiling", "service"},
     {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
     {"problems", "picture_camera", "locating"},
     {"pipeline", "recording"},

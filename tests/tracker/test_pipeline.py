@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from tracker import CameraImage, Config, Hands, Pipeline, Scan
 from tracker.camera import CameraModel
-from tracker.containers import OccupancyGrid
+from tracker.containers import Caller, CallState, OccupancyGrid, WaitingList
 from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.notes import Note, NoteKind
 from tracker.transforms import StampedTransform
@@ -621,3 +621,33 @@ def test_pictures_of_another_size_are_told(located):
         )
     changed = [NoteKind.PICTURE_SIZE_CHANGED in [n.kind for n in r.notes] for r in results]
     assert changed == [False, False, True, False]
+
+
+def test_a_kept_waiting_list_goes_on_once_the_camera_is_located():
+    kept = WaitingList(
+        0,
+        (
+            Caller(
+                id=5, state=CallState.WAITING, called_ns=0, state_since_ns=0, raised_since_ns=0,
+                last_up_ns=10**9, is_up=False, xy_m=(2.0, 0.0), covariance_m2=(0.01, 0.0, 0.01),
+                seen_ns=0,
+            ),
+        ),
+    )  # fmt: skip
+    pipeline = Pipeline(Config(), SeenHands((320, 100)))
+    pipeline.restore(kept)
+    assert pipeline.process(image_at(START_NS)).waiting_list.find(5) is None
+    pipeline.add_transform(static("map", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+    last = play(pipeline, 4, START_NS + PERIOD_NS)[-1]
+    assert [caller.id for caller in last.waiting_list.callers] == [5]
+    assert last.waiting_list.find(5).track_id == last.tracks.id[0]
+
+
+def test_calls_outlive_a_camera_that_pauses_for_minutes(located):
+    play(located, 10)
+    located.detector.wrists_px = ()
+    play(located, 5, START_NS + 10 * PERIOD_NS)
+    later = play(located, 3, START_NS + 200_000_000_000, scan=None)[-1]
+    assert len(later.tracks) == 0
+    assert [caller.id for caller in later.waiting_list.waiting] == [1]

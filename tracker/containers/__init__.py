@@ -20,9 +20,12 @@ from tracker.containers.sensor_kind import SensorKind
 from tracker.containers.sensors import CameraImage, Scan
 from tracker.containers.tracks import Tracks
 from tracker.containers.view import View
+from tracker.containers.waiting_list import Caller, CallState, WaitingList
 
 __all__ = [
     "BoolArray",
+    "CallState",
+    "Caller",
     "CameraImage",
     "FloatArray",
     "FrameResult",
@@ -40,5 +43,6 @@ __all__ = [
     "Tracks",
     "Truth",
     "View",
+    "WaitingList",
     "check_stamp",
 ]

@@ -21,6 +21,7 @@ from tracker.containers.hands import Hands
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
 from tracker.containers.tracks import Tracks
+from tracker.containers.waiting_list import WaitingList
 from tracker.errors import ShapeError
 from tracker.notes import Note
 
@@ -126,6 +127,7 @@ class FrameResult:
         frame_id: The frame that `tracks` are in: the fixed one; before the first transform the
             camera's. None where it is unknown, so that no place can be given: a transform is
             missing that was there before, or there was none and the camera's axes are optical.
+        waiting_list: Who waits for service, after this image.
         work: What perception did, where the detector tells; of all fields the only one that
             differs when the same recording is replayed.
     """
@@ -142,3 +144,4 @@ class FrameResult:
     notes: tuple[Note, ...] = ()
     frame_id: str | None = None
     work: PerceptionWork | None = None
+    waiting_list: WaitingList = field(default_factory=WaitingList)

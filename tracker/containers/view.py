@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,14 @@ class View:
     sensor_pose: FloatArray
     horizontal_fov_rad: float
     range_max_m: float = np.inf
+
+    def covers(self, xy_m: tuple[float, float]) -> bool:
+        """Whether a place in the fixed frame is within range and field of view."""
+        x, y, yaw = self.sensor_pose
+        offset = xy_m[0] - x, xy_m[1] - y
+        off_axis_rad = math.remainder(math.atan2(offset[1], offset[0]) - yaw, math.tau)
+        is_ahead = abs(off_axis_rad) <= self.horizontal_fov_rad / 2.0
+        return is_ahead and math.hypot(*offset) <= self.range_max_m
 
     @staticmethod
     def between(

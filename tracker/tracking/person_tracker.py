@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike
 
 from tracker.compiling.machine import Machine
 from tracker.config import Config
-from tracker.containers import FloatArray, Measurements, Tracks, View, check_stamp
+from tracker.containers import FloatArray, Measurements, Tracks, View, WaitingList, check_stamp
 from tracker.containers.arrays import sealed
 from tracker.containers.multilateration import with_positions
 from tracker.errors import ShapeError
-from tracker.selection.selector import Selector
+from tracker.service.call_keeper import CallKeeper
 from tracker.tracking.claims import Claims, claims_of
 from tracker.tracking.doors import Associator, MotionModel, association_by, prediction_by
 from tracker.tracking.frame import interpreted, make_frame, track_frame
@@ -41,7 +41,7 @@ class PersonTracker:
     reused by one tracker.
 
     Args:
-        config: The tracking and selection groups.
+        config: The groups tracking, selection and service.
         motion: A motion model of your own, (means, covariances, seconds) -> (means, covariances),
             of shapes (N, 4) and (N, 4, 4), instead of `motion` in the configuration.
         associate: An association of your own: log-odds of every track and measurement, shape
@@ -74,7 +74,7 @@ class PersonTracker:
         self._watch = watch
         self._next_id, self._next_bystander = 1, -1
         self._stamp_ns: int | None = None
-        self.selector = Selector(config or Config())
+        self.calls = CallKeeper(config or Config())
         self._set_config(config or Config())
         self._now = self._nobody()
 
@@ -104,10 +104,15 @@ class PersonTracker:
         return self._now.mean[0, :, :2]
 
     def reset(self) -> None:
-        """Forget everybody; identities go on counting."""
+        """Forget everybody, and who has called; identities go on counting."""
         self._now = self._nobody()
         self._stamp_ns = None
-        self.selector.reset()
+        self.calls.reset()
+
+    def restore(self, kept: WaitingList) -> None:
+        """Go on with a waiting list of before; its numbers are given to nobody else."""
+        self._next_id = max([self._next_id, *(caller.id + 1 for caller in kept.callers)])
+        self.calls.restore(kept)
 
     def lower_hands(self) -> None:
         """Let every hand count as down until it is seen up again; identities stay."""
@@ -195,22 +200,21 @@ class PersonTracker:
         self._run(claims, instant, told)
         self._stamp_ns = stamp_ns
         tracks = tracks_of(self._now, stamp_ns, customers_of(self._now))
-        chosen = self.selector.choose(tracks, stamp_ns, np.asarray(robot_xy_m, dtype=np.float64))
-        tracks.__dict__["selected_id"] = chosen
+        seen = self.people if self.calls.wants_bystanders else tracks
+        calls = self.calls.step(seen, np.asarray(robot_xy_m, dtype=np.float64), scan_view)
+        tracks.__dict__["selected_id"] = calls.selected_track_id
         return tracks
 
     def _run(self, claims: Claims, instant: Instant, likeness: FloatArray) -> None:
-        people = self._now.people
-        trace = (
-            NO_TRACE if self._watch is None else Trace.room(len(claims.kind), *people.weight.shape)
-        )
+        people, watch = self._now.people, self._watch
+        trace = NO_TRACE if watch is None else Trace.room(len(claims.kind), *people.weight.shape)
         frame, settings = self._frame, cast(Any, self._settings)
         if self._machine is not None and self._machine.code is not None:
             frame, settings = self._machine.code, self._record
         self._now = frame(people, claims, instant, likeness, settings, trace)
         self._next_id, self._next_bystander = self._now.next_id, self._now.next_bystander
-        if self._watch is not None:
-            self._watch(Watched(instant.stamp_ns, people, claims, trace, self._config))
+        if watch is not None:
+            watch(Watched(instant.stamp_ns, people, claims, trace, self._config))
 
     def _likeness(self, likeness: ArrayLike | None, measured: int) -> FloatArray:
         """For the loops: a row for everybody, bystanders too."""
@@ -234,7 +238,7 @@ class PersonTracker:
     def _set_config(self, config: Config) -> None:
         if self._motion is not None:  # which has one mode
             config = config.model_copy(update={"motion": "cv"})
-        self._config = self.selector.config = config
+        self._config = self.calls.config = config
         self._settings = settings_of(config)
         self._record = record_of(self._settings)
 

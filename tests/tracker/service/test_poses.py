@@ -3,7 +3,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tracker import Config, Measurements, PersonTracker
-from tracker.selection import approach_pose, customer_pose
+from tracker.service import approach_pose, customer_pose
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from tracker import Config, Measurements, PersonTracker
+from tracker.service import Command, Verb
 
 NOISE = 0.05**2 * np.eye(2)
 NEAR, FAR = (1.0, 0.0), (3.0, 0.5)
@@ -20,7 +21,7 @@ def test_the_selection_chooses_when_the_chosen_one_s_hand_goes_down(selection, e
     # Nobody is chosen until both hands count: the far one since frame 1, the near one since 4.
     tracker = PersonTracker(Config(selection=selection))
     run(tracker, [[FAR]] * 3 + [[FAR, NEAR]] * 3)
-    tracker.selector.reset()
+    tracker.calls.reset()
     tracks = tracker.step(10**9, Measurements.cartesian([FAR, NEAR], NOISE))
     assert tracks.selected_id == expected
 
@@ -46,6 +47,6 @@ def test_the_selection_can_be_held_after_the_hand_went_down():
 def test_a_released_customer_makes_room_for_the_next():
     tracker = PersonTracker()
     run(tracker, [[FAR, NEAR]] * 4)
-    assert tracker.selector.release() == 1
+    assert tracker.calls.obey(Command(Verb.RELEASE)).text == "customer 1 is released"
     tracks = tracker.step(10**9, Measurements.cartesian([FAR, NEAR], NOISE))
     assert tracks.selected_id == 2
