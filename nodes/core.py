@@ -11,23 +11,31 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 
+from nodes.call_desk import CallDesk
 from nodes.diagnostics import WARN, Diagnostics, encode_statuses
 from nodes.fault_log import FaultLog
 from nodes.header_peek import peek_header
 from nodes.image_silence import patience_s
 from nodes.inbox import Inbox
 from nodes.link import Link
-from nodes.outputs import HasSubscribers, Publish, publish_answer, publish_nobody, publish_views
+from nodes.outputs import (
+    HasSubscribers,
+    Publish,
+    publish_answer,
+    publish_nobody,
+    publish_views,
+)
 from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
 from nodes.work_budget import WorkBudget
 from tracker.config import NODE_NAME, Config
 from tracker.containers import CameraImage, FrameResult, Scan
 from tracker.errors import TrackerError
 from tracker.messages import Encoded, decode
+from tracker.messages.types import deserialize
 from tracker.notes import NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.pipeline import Pipeline
-from tracker.service import Command, Verb
+from tracker.service import Answer, Command, Verb
 from tracker.transforms import Transforms
 from tracker.waiting import IMAGES_KEPT, WaitingImage
 
@@ -104,6 +112,7 @@ class NodeCore:
         self._node_name = node_name.lstrip("/")
         self._last: FrameResult | None = None
         self._shown_in: str | None = None
+        self._calls = CallDesk(self._pipeline, config, publish, lambda text: log("warning", text))
         self._worker = threading.Thread(target=self._work, name="hand_detector", daemon=True)
         log("info", _greeting(config))
 
@@ -175,11 +184,21 @@ class NodeCore:
         Returns:
             Whether anybody was selected, and what happened, in words.
         """
-        chosen = self._last.tracks.selected_id if self._last is not None else None
-        self._inbox.order(self._release)
+        chosen = self._calls.selected_id
         if chosen is None:
             return False, "nobody is selected"
+        # By the number: another one may be selected by the time that the worker is free.
+        self._inbox.order(lambda: self._calls.obey(Command(Verb.RELEASE, chosen)))
         return True, f"customer {chosen} is released"
+
+    def command(self, text: str) -> None:
+        """Follow a command as `serve 3`; what comes of it is published."""
+        try:
+            command = Command.parse(text)
+        except TrackerError as error:
+            self._calls.answer(text, Answer(False, str(error)))
+            return
+        self._inbox.order(lambda: self._calls.obey(command))
 
     def reset(self, reason: str) -> None:
         """Forget people, scans and moving transforms, as after a jump of the clock.
@@ -271,6 +290,9 @@ class NodeCore:
 
     def _take_in(self, item: Input, message: Encoded) -> None:
         is_static = item is Input.STATIC_TRANSFORMS
+        if item is Input.COMMANDS:
+            self._take_command(message)
+            return
         try:
             events = list(decode(message.type_name, message.cdr, is_static=is_static))
         except TrackerError as error:
@@ -283,6 +305,14 @@ class NodeCore:
                 self._pipeline.add(event)
             except TrackerError as error:
                 self.refuse(item, str(error))
+
+    def _take_command(self, message: Encoded) -> None:
+        try:
+            text = deserialize(*message).data
+        except TrackerError as error:
+            self.refuse(Input.COMMANDS, str(error))
+            return
+        self.command(text)
 
     def _is_ready(self, image: WaitingImage) -> bool:
         """Whether an image need not wait any longer for the transform of its stamp."""
@@ -299,6 +329,8 @@ class NodeCore:
             return
         self._last, self._shown_in = result, result.frame_id or self._shown_in
         publish_answer(result, self._publish)
+        if result.sensor_pose is not None:
+            self._calls.show(result.sensor_pose[:2])
         latency_s = (self._now_ns() - result.stamp_ns) / 1e9
         busy_s = (self._steady_ns() - began_ns) / 1e9
         self._busy_s += (busy_s - self._busy_s) / _BUSY_IMAGES
@@ -319,16 +351,15 @@ class NodeCore:
             most = self._config.search_regions_per_frame
             detector.set_budget(self._budget.after(result.work, busy_share, most))
 
-    def _release(self) -> None:
-        self._pipeline.tracker.calls.obey(Command(Verb.RELEASE))
-
     def _reset(self, reason: str) -> None:
         self._pipeline.reset()
         self._note_reset(reason)
 
     def _forget_everybody(self) -> None:
         self._images.reset()
+        calls = self._pipeline.tracker.calls.now
         self._pipeline.tracker.reset()
+        self._pipeline.tracker.restore(calls)  # who waits is not served by a camera that is off
         self._pipeline.detector.reset()
         self._take_back()
 
@@ -345,6 +376,7 @@ class NodeCore:
         stamp_ns = self._last.stamp_ns if self._last is not None else 0
         self._last = None
         publish_nobody(stamp_ns, self._shown_in, self._publish, self._has_subscribers)
+        self._calls.show()
 
     def _image_of(self, message: Encoded) -> CameraImage:
         (image,) = decode(*message, max_pixels=self._config.picture_max_pixels)

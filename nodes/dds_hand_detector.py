@@ -220,7 +220,8 @@ def command(
 
     Listens to image_raw (sensor_msgs/Image; CompressedImage with -p image_transport:=compressed),
     scan, camera_info, /tf and /tf_static. Publishes hand_raised, customer_pose,
-    hand_detection_debug, ~/tracks, ~/markers, ~/approach_pose and /diagnostics; answers
+    hand_detection_debug, ~/tracks, ~/markers, ~/approach_pose, ~/raised_hands, ~/waiting_list
+    and /diagnostics; follows ~/command with an ~/answer; answers
     ~/release_customer, ~/enable, ~/reset and ROS 2's parameter services.
 
     Other nodes, with ROS or without, are met as ROS 2 does: by ROS_DOMAIN_ID,

@@ -36,6 +36,7 @@ _KEPT = {
     Input.MAP: 1,
     Input.CAMERA_INFO: 40,
     Input.SCAN: 40,
+    Input.COMMANDS: 100,
 }
 
 

@@ -6,8 +6,14 @@ from collections.abc import Callable
 
 from nodes.topics import Output
 from tracker.config import Config
-from tracker.containers import CameraImage, FrameResult, Tracks
-from tracker.messages import Encoded, encode, encode_markers
+from tracker.containers import CameraImage, FloatArray, FrameResult, Tracks, WaitingList
+from tracker.messages import (
+    Encoded,
+    encode,
+    encode_markers,
+    encode_raised,
+    encode_waiting_list,
+)
 from tracker.report.debug_picture import draw_debug_image
 
 #: Hands a message to the wire.
@@ -23,6 +29,27 @@ def publish_answer(result: FrameResult, publish: Publish) -> None:
     if result.approach_pose is not None:
         publish(Output.APPROACH_POSE, encode(result.approach_pose))
     publish(Output.HAND_RAISED, encode(result.hand_raised))
+    publish(Output.RAISED_HANDS, encode_raised(result.tracks, frame_id=result.frame_id))
+
+
+def publish_waiting_list(
+    calls: WaitingList, robot_xy_m: FloatArray, config: Config, publish: Publish
+) -> None:
+    """Everybody who has called, with the poses that hold for the robot's place.
+
+    Args:
+        calls: The list, with places in the fixed frame.
+        robot_xy_m: Shape (2,): the camera in the fixed frame.
+        config: `fixed_frame` and `approach_distance_m`.
+        publish: Hands a message to the wire.
+    """
+    message = encode_waiting_list(
+        calls,
+        frame_id=config.fixed_frame,
+        robot_xy_m=robot_xy_m,
+        approach_distance_m=config.approach_distance_m,
+    )
+    publish(Output.WAITING_LIST, message)
 
 
 def publish_views(
@@ -61,6 +88,7 @@ def publish_nobody(
     """
     publish(Output.HAND_RAISED, encode(False))
     nobody = Tracks.none(stamp_ns)
+    publish(Output.RAISED_HANDS, encode_raised(nobody, frame_id=frame_id))
     if frame_id is None:
         return
     if has_subscribers(Output.TRACKS):

@@ -48,6 +48,9 @@ PROFILES: dict[Input | Output, Profile] = {
     Input.STATIC_TRANSFORMS: Profile(
         True, True, 100, "Latched by their publishers, each with a part of the robot.",
     ),
+    Input.COMMANDS: Profile(
+        True, False, 10, "What a program or a person says once; none may be lost.",
+    ),
     Output.HAND_RAISED: Profile(
         True, True, 1, "A state: who comes late must know it, and only the last one counts.",
     ),
@@ -56,6 +59,15 @@ PROFILES: dict[Input | Output, Profile] = {
     ),
     Output.APPROACH_POSE: Profile(
         True, False, 1, "As the customer's pose.",
+    ),
+    Output.RAISED_HANDS: Profile(
+        True, True, 1, "As the Bool, with its stamp.",
+    ),
+    Output.WAITING_LIST: Profile(
+        True, True, 1, "A state: a program that is started later must know who waits.",
+    ),
+    Output.ANSWERS: Profile(
+        True, False, 10, "One for each command; none may be lost.",
     ),
     Output.TRACKS: Profile(
         True, False, 5, "Small, and identities should not be missed.",

@@ -18,7 +18,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, LaserScan
-from std_msgs.msg import Bool
+from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 from tf2_ros import Buffer
@@ -52,7 +52,7 @@ _CLASSES = {
         "sensor_msgs": (Image, CompressedImage, LaserScan, CameraInfo),
         "nav_msgs": (OccupancyGrid,),
         "tf2_msgs": (TFMessage,),
-        "std_msgs": (Bool,),
+        "std_msgs": (Bool, String),
         "geometry_msgs": (PoseStamped,),
         "vision_msgs": (Detection3DArray,),
         "visualization_msgs": (MarkerArray,),

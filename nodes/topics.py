@@ -20,14 +20,18 @@ class Input(str, Enum):
     STATIC_TRANSFORMS = "static transforms"
     CAMERA_INFO = "camera_info"
     MAP = "map"
+    COMMANDS = "commands"
 
 
 class Output(str, Enum):
     """What a node publishes; the values are its topics' names before remapping."""
 
     HAND_RAISED = "hand_raised"
+    RAISED_HANDS = "~/raised_hands"
     CUSTOMER_POSE = "customer_pose"
     APPROACH_POSE = "~/approach_pose"
+    WAITING_LIST = "~/waiting_list"
+    ANSWERS = "~/answer"
     TRACKS = "~/tracks"
     MARKERS = "~/markers"
     DEBUG_IMAGE = "hand_detection_debug"
@@ -53,12 +57,16 @@ INPUT_TOPICS = {
     Input.MAP: InputTopic("map", types.OCCUPANCY_GRID),
     Input.TRANSFORMS: InputTopic("/tf", types.TF_MESSAGE),
     Input.STATIC_TRANSFORMS: InputTopic("/tf_static", types.TF_MESSAGE),
+    Input.COMMANDS: InputTopic("~/command", types.STRING),
 }
 
 OUTPUT_TYPES = {
     Output.HAND_RAISED: types.BOOL,
+    Output.RAISED_HANDS: types.DETECTIONS,
     Output.CUSTOMER_POSE: types.POSE_STAMPED,
     Output.APPROACH_POSE: types.POSE_STAMPED,
+    Output.WAITING_LIST: types.DETECTIONS,
+    Output.ANSWERS: types.STRING,
     Output.TRACKS: types.DETECTIONS,
     Output.MARKERS: types.MARKER_ARRAY,
     Output.DEBUG_IMAGE: types.IMAGE,

@@ -551,6 +551,11 @@ class Config(BaseModel):
         "(`image_raw/compressed`).",
         group="node",
     )  # fmt: skip
+    waiting_list_file: str = _parameter(
+        "", "File in which a node keeps the waiting list, so that it goes on with it when it is "
+        "started again; empty keeps none.",
+        group="node",
+    )  # fmt: skip
     image_silence_s: float = _parameter(
         1.2, "After so long without a processed image a node reports nobody: no hand is up, no "
         "tracks. A camera slower than one image a second needs more.",

@@ -29,6 +29,7 @@ class NoteKind(Enum):
     PRINCIPAL_POINT_OFF = "principal point off the middle"
     BIT_DEPTH_GUESSED = "bit depth guessed"
     HAND_BEYOND_LENS = "hand beyond the lens"
+    CALLS_OF_LATER = "waiting list of a later time"
 
     @property
     def is_fault(self) -> bool:
@@ -65,6 +66,7 @@ _REMARKS = frozenset(
         NoteKind.PRINCIPAL_POINT_OFF,
         NoteKind.BIT_DEPTH_GUESSED,
         NoteKind.HAND_BEYOND_LENS,
+        NoteKind.CALLS_OF_LATER,
     }
 )
 _WITHOUT_SCAN = frozenset(

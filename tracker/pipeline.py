@@ -214,8 +214,7 @@ class Pipeline:
         stamp_ns = shown_ns(image.stamp_ns, self.config.camera_stamp_offset_s)
         place = self._locate_camera(image, stamp_ns)
         if self._restored is not None and place.is_located:
-            self.tracker.restore(self._restored)
-            self._restored = None
+            self._restore_calls(image.stamp_ns)
         fixed_from_camera = place.fixed_from_camera
         scan, scan_notes = choose_scan(
             self.room.scans_by_age(stamp_ns),
@@ -355,6 +354,17 @@ class Pipeline:
         if place.moved is not None:
             self.tracker.doubt(place.moved, place.unseen_s)
         return place
+
+    def _restore_calls(self, stamp_ns: int) -> None:
+        kept, self._restored = self._restored, None
+        if kept is not None and kept.stamp_ns <= stamp_ns:
+            self.tracker.restore(kept)
+        elif kept is not None:
+            ahead_s = (kept.stamp_ns - stamp_ns) / 1e9
+            self._note(
+                NoteKind.CALLS_OF_LATER,
+                f"the kept waiting list is {ahead_s:.1f} s later than the images: it begins empty",
+            )
 
     def _turn_upright(self, fixed_from_camera: RigidTransform) -> None:
         """The detector sees pictures in which up is up; it begins again where the turn changes."""

@@ -14,7 +14,8 @@ def test_sensors_are_heard_best_effort_and_the_state_is_latched():
     for item in (Input.IMAGES, Input.SCAN, Input.CAMERA_INFO):
         assert not PROFILES[item].reliable
     latched = {item for item, profile in PROFILES.items() if profile.transient_local}
-    assert latched == {Output.HAND_RAISED, Input.STATIC_TRANSFORMS, Input.MAP}
+    states = {Output.HAND_RAISED, Output.RAISED_HANDS, Output.WAITING_LIST}
+    assert latched == {*states, Input.STATIC_TRANSFORMS, Input.MAP}
     assert PROFILES[Output.HAND_RAISED].depth == 1
 
 

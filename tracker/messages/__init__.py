@@ -7,6 +7,7 @@ from tracker.messages.decode import DECODABLE, Event, decode, events_from_messag
 from tracker.messages.encode import CameraInfo, Encodable, encode
 from tracker.messages.markers import encode_markers
 from tracker.messages.types import Encoded, definition, type_hash
+from tracker.messages.waiting import encode_raised, encode_waiting_list
 
 __all__ = [
     "DECODABLE",
@@ -18,6 +19,8 @@ __all__ = [
     "definition",
     "encode",
     "encode_markers",
+    "encode_raised",
+    "encode_waiting_list",
     "events_from_message",
     "type_hash",
 ]

@@ -241,7 +241,7 @@ def _map(grid: OccupancyGrid) -> Any:
 
 def _tracks(tracks: Tracks, frame_id: str) -> Any:
     people = [
-        _person(
+        person(
             track_id=int(tracks.id[row]),
             xy=(float(tracks.mean[row, 0]), float(tracks.mean[row, 1])),
             covariance=tracks.covariance[row, :2, :2],
@@ -259,7 +259,7 @@ def _truth(truth: Truth, frame_id: str) -> Any:
     for row in range(len(truth)):
         words = ["hand_raised" if truth.hand_up[row] else "hand_lowered"]
         people.append(
-            _person(
+            person(
                 track_id=int(truth.id[row]),
                 xy=(float(truth.xy_m[row, 0]), float(truth.xy_m[row, 1])),
                 covariance=np.zeros((2, 2)),
@@ -271,7 +271,28 @@ def _truth(truth: Truth, frame_id: str) -> Any:
     return build(types.DETECTIONS, header=header(truth.stamp_ns, frame_id), detections=people)
 
 
-def _person(
+def hypothesis(
+    word: str,
+    score: float,
+    position_m: tuple[float, float, float],
+    covariance_m2: Any,
+    quaternion_xyzw: tuple[float, float, float, float],
+) -> Any:
+    """A vision_msgs/ObjectHypothesisWithPose; of the 6x6 covariance x and y are estimated."""
+    spread = np.zeros((6, 6))
+    spread[:2, :2] = covariance_m2
+    return build(
+        "vision_msgs/msg/ObjectHypothesisWithPose",
+        hypothesis=build("vision_msgs/msg/ObjectHypothesis", class_id=word, score=score),
+        pose=build(
+            "geometry_msgs/msg/PoseWithCovariance",
+            pose=ros_pose(position_m, quaternion_xyzw),
+            covariance=spread.reshape(-1),
+        ),
+    )
+
+
+def person(
     *,
     track_id: int,
     xy: tuple[float, float],
@@ -279,29 +300,16 @@ def _person(
     words: list[str],
     score: float,
     stamp: Any,
+    facing: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0),
 ) -> Any:
     """One vision_msgs/Detection3D; the pose stands on the floor, the box around the body.
 
     Of the 6x6 covariance only x and y are estimated; the rest is zero.
     """
-    spread = np.zeros((6, 6))
-    spread[:2, :2] = covariance
-    on_floor = build(
-        "geometry_msgs/msg/PoseWithCovariance",
-        pose=ros_pose((*xy, 0.0)),
-        covariance=spread.reshape(-1),
-    )
     return build(
         "vision_msgs/msg/Detection3D",
         header=stamp,
-        results=[
-            build(
-                "vision_msgs/msg/ObjectHypothesisWithPose",
-                hypothesis=build("vision_msgs/msg/ObjectHypothesis", class_id=word, score=score),
-                pose=on_floor,
-            )
-            for word in words
-        ],
+        results=[hypothesis(word, score, (*xy, 0.0), covariance, facing) for word in words],
         bbox=build(
             "vision_msgs/msg/BoundingBox3D",
             center=ros_pose((*xy, _BODY_HEIGHT_M / 2)),

@@ -17,6 +17,7 @@ from rosbags.typesys.store import Typestore
 from tracker.errors import RecordingError
 
 BOOL = "std_msgs/msg/Bool"
+STRING = "std_msgs/msg/String"
 IMAGE = "sensor_msgs/msg/Image"
 COMPRESSED_IMAGE = "sensor_msgs/msg/CompressedImage"
 LASER_SCAN = "sensor_msgs/msg/LaserScan"

@@ -104,6 +104,12 @@ class CallKeeper:
         self._callers.clear()
         self._now = WaitingList()
 
+    def lower_hands(self) -> None:
+        """No hand counts as up until it is seen up again."""
+        for caller in self._callers.values():
+            self._callers[caller.id] = replace(caller, is_up=False)
+        self._renew(self._now.stamp_ns)
+
     def restore(self, kept: WaitingList) -> None:
         """Go on with a list of before, beside whoever has called since; nobody is in sight."""
         if self._now.selected_id is None:

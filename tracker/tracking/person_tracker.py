@@ -120,6 +120,7 @@ class PersonTracker:
         people.counts[[DETECTED, MISSED]] = 0
         people.flags[RAISED] = False
         self._now = self._now._replace(people=people)
+        self.calls.lower_hands()
 
     def doubt(self, moved: FloatArray, over_s: float) -> None:
         """Widen what is believed of everybody by a motion that they may be off by.

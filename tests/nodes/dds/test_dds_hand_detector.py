@@ -15,7 +15,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, Scan
 from tracker.geometry import RigidTransform
 from tracker.messages import CameraInfo, encode
-from tracker.messages.types import IMAGE, build
+from tracker.messages.types import IMAGE, STRING, build, serialize
 from tracker.transforms import StampedTransform
 
 pytestmark = [pytest.mark.slow, pytest.mark.model]
@@ -228,6 +228,27 @@ def test_services_and_parameters_answer_while_it_works(ear, start_node, play, as
     before = ear.statuses()["processing"].values["resets"]
     assert ask("/hand_detector/reset", TRIGGER).success
     ear.until(lambda: ear.statuses()["processing"].values["resets"] != before)
+    player.kill()
+
+
+def test_commands_are_followed_and_answered(ear, start_node, play, make_node):
+    start_node()
+    commands = make_node("waiter").publisher("/hand_detector/command", STRING)
+    player = play("--start-offset", 1)
+    ear.until(lambda: any(item.detections for item in ear.messages(Output.WAITING_LIST)))
+    ear.until(lambda: commands.subscribers)
+    for text in ("serve 1", "dance"):
+        commands.publish(serialize(build(STRING, data=text)).cdr)
+    ear.until(lambda: len(ear.heard[Output.ANSWERS]) == 2)
+    assert {item.data.rpartition(": ")[0] for item in ear.messages(Output.ANSWERS)} >= {
+        "serve 1: done"
+    }
+    ear.until(
+        lambda: (
+            ear.messages(Output.WAITING_LIST)[-1].detections[0].results[0].hypothesis.class_id
+            == "being_served"
+        )
+    )
     player.kill()
 
 

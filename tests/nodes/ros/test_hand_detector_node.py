@@ -1,6 +1,7 @@
 """The node in a process of its own, played to by another, as on a robot."""
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from tracker.containers import CameraImage
 from tracker.geometry import RigidTransform
 from tracker.messages import CameraInfo, encode
 from tracker.transforms import StampedTransform
+
+ROOT = Path(__file__).parents[3]
 
 pytestmark = [pytest.mark.slow, pytest.mark.model]
 
@@ -314,6 +317,32 @@ def test_the_services_answer(ear, start_node, play):
     ear.until(lambda: len(ear.heard[Output.HAND_RAISED]) > count + 2)
     assert ear.call(Trigger, "hand_detector/reset", Trigger.Request()).success
     ear.until(lambda: ear.statuses()["processing"].values["resets"] == "1")
+    player.kill()
+
+
+@pytest.mark.parametrize("module", ["nodes.hand_detector", "nodes.dds_hand_detector"])
+def test_the_example_waiter_serves_who_calls_and_who_is_unknown_is_refused(
+    ear, start_node, play, run, module
+):
+    from std_msgs.msg import String
+
+    start_node(module=module)
+    example = ROOT / "examples/waiter.py"
+    waiter = run(example, "--pretend-drive-s", 2, "--service-s", 0.5, "--count", 1, name="waiter")
+    player = play("--loop", 2)
+    assert waiter.wait(60.0) == 0, waiter.log()
+    assert "served: 1" in waiter.log()
+    command = ear.node.create_publisher(String, "hand_detector/command", 10)
+    ear.until(command.get_subscription_count)
+    command.publish(String(data="serve 99"))
+    ear.until(lambda: len(ear.heard[Output.ANSWERS]) >= 3)
+    assert [item.data.partition(":")[0] for item in ear.messages(Output.ANSWERS)] == [
+        "serve 1", "served 1", "serve 99",
+    ]  # fmt: skip
+    assert "refused: no customer has the number 99" in ear.messages(Output.ANSWERS)[-1].data
+    assert ear.messages(Output.WAITING_LIST)[-1].detections[0].id == "1"
+    raised = [len(item.detections) > 0 for item in ear.messages(Output.RAISED_HANDS)]
+    assert raised == [item.data for item in ear.messages(Output.HAND_RAISED)][: len(raised)]
     player.kill()
 
 
