@@ -191,7 +191,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folders", nargs="*", type=Path)
     parser.add_argument("--callers", type=int, default=80)
-    parser.add_argument("--idlers", type=int, default=24)
+    parser.add_argument("--idlers", type=int, default=48)
     parser.add_argument("--seed", type=int, default=901)
     words = parser.parse_args()
     watcher, seen = Watcher(), []

@@ -22,6 +22,7 @@ from tracker.perception.hand_finder import HandFinder
 from tracker.perception.people_watch import LOOK_PLACES, PeopleWatch
 from tracker.perception.pictures import continues
 from tracker.perception.pose_hands import draw_hands
+from tracker.perception.verdict.belief import CALLS_FROM
 from tracker.perception.verdict.evidence import Seen, gather_evidence
 from tracker.perception.verdict.memory import HandMemory
 from tracker.perception.verdict.owners import (
@@ -153,11 +154,14 @@ class CallFinder:
                 for item, *told in zip(known, odds.tolist(), high.tolist(), strict=True)
             ]
         )
-        bar = self._bars(stamp_ns, hands, belief > 0.0)
+        begins = np.where([item.calls for item in known], 0.0, CALLS_FROM)
+        bar = begins + self._bars(stamp_ns, hands, belief > begins)
         self.weighed = Weighed(bodies, evidence, odds, belief, bar)
         raised = belief > bar
-        refusal = np.where(odds > bar, Refusal.TOO_BRIEF, reasons(evidence))
-        refusal = np.where((belief > 0.0) & ~raised, Refusal.ALWAYS_THERE, refusal)
+        for item, calls in zip(known, raised.tolist(), strict=True):
+            item.calls = calls
+        refusal = np.where(odds > 0.0, Refusal.TOO_BRIEF, reasons(evidence))
+        refusal = np.where((belief > begins) & ~raised, Refusal.ALWAYS_THERE, refusal)
         # A look around a hand may show a neighbor: where the person is hangs on sure owners alone.
         owner = seen.owner.copy()
         owner[seen.is_found] = sure_owners(hands[seen.is_found], bodies)

@@ -6,6 +6,8 @@ import numpy as np
 
 #: What is believed of a hand that was never seen, and how fast a belief fades to it, s.
 FIRST_LOG_ODDS, FADE_S = -1.75, 2.0
+#: A hand begins to call when so much is believed of it, and calls until less than nothing is.
+CALLS_FROM = 1.0
 #: Images of one hand are alike; each adds this share of its evidence.
 IMAGE_SHARE = 0.5
 #: No belief is weaker or stronger, so that a hand that goes up, or down, is soon noticed.

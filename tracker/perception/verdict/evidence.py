@@ -12,7 +12,7 @@ import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray
 from tracker.perception.bodies import ELBOWS, HEAD, SHOULDERS, WRISTS, Bodies, Joint
-from tracker.perception.verdict.owners import head_distance_px
+from tracker.perception.verdict.owners import hand_size_px, head_distance_px
 from tracker.perception.verdict.raise_rules import MIDDLE_ROOT, MIDDLE_TIP, THUMB_TIP, WRIST
 from tracker.perception.verdict.weights import NAMES
 
@@ -24,9 +24,11 @@ _CROWN = 0.5
 #: A body of which so much is not seen, or not believed, may be none. Pose models see people in
 #: cables and chairs, but hardly their elbows and wrists: .1 to .6 against .95 and more of people.
 _NO_PERSON = 0.3
-#: Between this share of that reach and half as much again a palm gets to the head; so high a wrist
-#: is above the shoulder.
-_ON_HEAD, _ABOVE = 0.5, 0.3
+#: Between these shares of that reach a closed hand, and a palm, gets to the head: nearer than the
+#: second are telephones, farther than the first are calls. So high a wrist is above the shoulder.
+_FIST_AT_HEAD, _PALM_AT_HEAD, _ABOVE = np.array([0.3, 0.7]), np.array([0.55, 0.75]), 0.3
+#: Of hands so short the landmarks do not tell open from closed; of those twice as long they do.
+_BLURRED_PX = 10.0
 #: Nearer to the head than this counts, in shoulder widths; likewise to the other hand.
 _HEAD_REACH, _OTHER_REACH = 0.9, 1.4
 
@@ -61,13 +63,19 @@ def gather_evidence(hands: Hands, bodies: Bodies, seen: Seen) -> FloatArray:
         for name in _ARM:
             arm[name][rows] = told[name]
     fingers, thumb = shape.pop("fingers"), shape.pop("thumb")
-    stretched, bent = np.clip(fingers, 0.0, 1.0), np.clip(-fingers, 0.0, 1.0)
+    sharp = found * np.clip(hand_size_px(hands) / _BLURRED_PX - 1.0, 0.0, 1.0)
+    stretched, bent = np.clip(fingers, 0.0, 1.0), np.clip(-fingers, 0.0, 1.0) * sharp
     palm = stretched * np.clip(shape["rise"], 0.0, 1.0)
+    # What cannot be told may be a palm.
+    maybe_palm = np.maximum(palm, 0.5 * found * (1.0 - sharp))
     is_alone = arm["forearm"] == 0.0
     # Talking hands move to and fro as well, but low and half open.
     upright_palm = palm * np.where(is_alone, 1.0, arm["forearm"])
     wave = seen.swing * np.clip(np.maximum(2.0 * arm["high"], upright_palm), 0.0, 1.0)
-    low, head = arm["low"], arm["head"]
+    # A telephone, a cup or an itch bends the hand; a palm that is shown beside the head is a
+    # greeting, one on the head is none, unless it passes there as it waves.
+    at_head = _at_head(arm["head"], maybe_palm) * (1.0 - palm * wave)
+    low = arm["low"]
     columns = {
         **shape,
         **arm,
@@ -80,16 +88,19 @@ def gather_evidence(hands: Hands, bodies: Bodies, seen: Seen) -> FloatArray:
         # Where no arm says more, an open palm that is surely a hand speaks for itself.
         "alone": is_alone * palm * np.clip(shape["score"], 0.0, 1.0),
         # An open hand before the shoulder may call, a closed one must be above it.
-        "low": low * (1.0 - palm),
-        "palm_low": low * palm,
+        "low": low * (1.0 - maybe_palm),
+        "palm_low": low * maybe_palm,
         "fist_low": owned * bent * np.clip(1.0 - arm["high"] / _ABOVE, 0.0, 1.0),
-        # A telephone, a cup or an itch bends the hand; a palm that is shown beside the head is a
-        # greeting, one on the head is none, unless it passes there as it waves.
-        "head": head * (1.0 - palm),
-        "palm_on_head": palm * np.clip(2.0 * head / _ON_HEAD - 2.0, 0.0, 1.0) * (1.0 - wave),
+        "head": at_head,
         "swing": wave,
     }
     return np.stack([columns[name] for name in NAMES], axis=-1)
+
+
+def _at_head(head: FloatArray, palm: FloatArray) -> FloatArray:
+    """Shape (H,): how surely hands are at the head, those that are palms nearer than fists."""
+    far, near = (_FIST_AT_HEAD + palm[:, None] * (_PALM_AT_HEAD - _FIST_AT_HEAD)).T
+    return np.asarray(np.clip((head - far) / (near - far), 0.0, 1.0))
 
 
 def _shapes_of(hands: Hands) -> dict[str, FloatArray]:

@@ -35,6 +35,7 @@ class RememberedHand:
         size_px: Of it; see `hand_size_px`.
         seen_ns: When.
         log_odds: That it calls; NaN before the first verdict.
+        calls: Whether it does.
         weighed_ns: When that was believed.
         faint: How much its owner's arms were doubted when they were seen best of late, 0 to 1.
         way: (stamp_ns, column of the wrist) in the images of the last `_SWING_S`.
@@ -44,6 +45,7 @@ class RememberedHand:
     size_px: float
     seen_ns: int
     log_odds: float = float("nan")
+    calls: bool = False
     weighed_ns: int = 0
     faint: float = 1.0
     way: list[tuple[int, float]] = field(default_factory=list)

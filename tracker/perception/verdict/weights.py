@@ -53,7 +53,6 @@ WEIGHTS = {
     "overhead": Weight(1.44, 2.0),
     "forearm": Weight(3.95, 2.0, reason=Refusal.ARM_DOWN),
     "head": Weight(-5.72, -3.0, reason=Refusal.AT_HEAD),
-    "palm_on_head": Weight(-3.97, -3.0, reason=Refusal.AT_HEAD),
     "inside": Weight(-2.23, -2.0, reason=Refusal.BEFORE_BODY),
     "together": Weight(-2.02, -2.0, 10.0, Refusal.BEFORE_BODY),
     "doubt": Weight(-1.15, -0.5, reason=Refusal.OWNER_UNKNOWN),

@@ -61,8 +61,18 @@ def test_a_thumb_speaks_for_an_open_hand_and_against_a_closed_one(upright_hand):
     fist = shaped(hand, **joints, **thumb_out, **{f"p{row}": (100, 93) for row in (8, 12, 16, 20)})
     assert evidence(palm)["spread"] == pytest.approx(1.0)
     assert evidence(palm)["thumb"] == 0.0
-    assert evidence(fist)["thumb"] == pytest.approx(1.0)
+    assert evidence(fist)["thumb"] > 0.8
     assert evidence(fist)["spread"] == 0.0
+
+
+def test_what_landmarks_of_few_pixels_say_of_fingers_counts_little(body, upright_hand):
+    def fist(palm_px):
+        bent = upright_hand((148, 98), palm_px=palm_px)
+        shift = {f"p{row}": (148, 98 - 1.2 * palm_px) for row in (6, 10, 14, 18)}
+        tips = {f"p{row}": (148, 98 - 0.6 * palm_px) for row in (8, 12, 16, 20)}
+        return evidence(shaped(bent, **shift, **tips), body(right_wrist=(148, 98)))
+
+    assert fist(5.0)["fist_low"] == 0.0 < 0.5 < fist(12.0)["fist_low"]
 
 
 @pytest.mark.parametrize(
@@ -136,9 +146,8 @@ def test_a_palm_that_is_shown_beside_the_head_is_told_from_one_on_it(body, uprig
         replace(palm, landmarks_px=palm.landmarks_px + np.array([18.0, 0.0])),
         body(right_wrist=(188, 72)),
     )
-    assert beside["palm_on_head"] == 0.0
-    assert on_head["palm_on_head"] > 0.5
-    assert on_head["head"] < 0.2
+    assert beside["head"] == 0.0
+    assert on_head["head"] > 0.4
 
 
 def test_a_palm_that_waves_past_the_head_is_not_on_it(body, upright_hand):
@@ -147,9 +156,8 @@ def test_a_palm_that_waves_past_the_head_is_not_on_it(body, upright_hand):
     palm = shaped(hand, **joints, **{f"p{row}": (188, 48) for row in (8, 12, 16, 20)})
     owner = body(right_elbow=(188, 102), right_wrist=(188, 72))
     still, waving = (evidence(palm, owner, swing=swing) for swing in (0.0, 1.0))
-    assert still["palm_on_head"] > 0.5
-    assert waving["palm_on_head"] < 0.1
-    assert waving["head"] == still["head"]
+    assert still["head"] > 0.4
+    assert waving["head"] < 0.1
 
 
 def test_a_wave_is_a_hand_above_the_shoulder_or_a_palm_on_an_upright_arm(body, upright_hand):
