@@ -22,7 +22,7 @@ _BEARING_STD_MAX_RAD = float(np.pi / np.sqrt(3.0))
 _RANGE_MIN_M = 0.05
 #: What the map says to be furniture with more than these log-odds sustains nobody, and owns a hand
 #: only where nobody else fits it (guess).
-_MAPPED_LOG_ODDS = 2.0
+_MAPPED_LOG_ODDS = 1.5
 #: Who sits has the middle of the body so far behind what the laser sees at the height of shins, on
 #: average: a quarter of a meter of those who face the robot, nothing of those beside a table. So
 #: much lasts of the spread, and so much differs from scan to scan, as table legs show (guesses).

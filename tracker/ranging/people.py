@@ -97,8 +97,23 @@ def find_people(
     inward = LEG_RADIUS_M * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
     total = np.add.reduceat(scan.xy_m[found.rows] + inward, found.begins)
     middle = total[is_body] / found.beams[is_body, None]
-    log_odds = np.zeros(len(middle)) if room is None else room.furniture_log_odds(middle)
+    log_odds = np.zeros(len(middle))
+    if room is not None:
+        log_odds = room.furniture_log_odds(_distance_m(scan, found, inward, room)[is_body])
     return _pair_legs(middle, found.width_m[is_body], log_odds)
+
+
+def _distance_m(
+    scan: LocatedScan, found: Segments, inward: FloatArray, room: RoomMap
+) -> FloatArray:
+    """Shape (S,): how far from occupied cells each segment has a point; NaN where nobody knows.
+
+    The farthest point counts: a shin that touches a table's post is one segment with it, and no
+    furniture. Of a slim post the map shows the surface or the middle: the nearer one counts.
+    """
+    points = scan.xy_m[found.rows]
+    distance_m = np.fmin(room.distance_m(points), room.distance_m(points + inward))
+    return np.asarray(np.fmax.reduceat(distance_m, found.begins))
 
 
 def _is_person_sized(found: Segments, leg_width_min_m: float, body_width_m: float) -> BoolArray:

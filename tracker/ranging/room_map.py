@@ -14,9 +14,6 @@ from tracker.geometry import RigidTransform
 
 #: From so many percent on a cell counts as occupied; what map_server asks for by default.
 OCCUPIED_FROM = 65
-#: An unknown cell so near to an occupied one is the inside of a pillar, which no scanner has seen:
-#: there the map does say something (guess).
-_INSIDE_M = 0.3
 #: Mapped furniture shows up this many cells and meters beside its cells, at most (guess).
 _REACH_CELLS, _REACH_M = 1.5, 0.1
 #: Near an occupied cell a person-sized thing is so much more often furniture than a person (guess)
@@ -48,7 +45,7 @@ class RoomMap:
         if not free.all():
             in_cells = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
             distances_m = np.asarray(in_cells * np.float32(grid.resolution_m))
-        distances_m[(grid.cells == UNKNOWN) & (distances_m > _INSIDE_M)] = np.nan
+        distances_m[grid.cells == UNKNOWN] = np.nan
         map_from_grid = RigidTransform.from_planar(*grid.origin)
         return RoomMap(distances_m, grid.resolution_m, map_from_grid.inverse())
 
@@ -80,14 +77,14 @@ class RoomMap:
         row, column = (np.where(inside, index, 0).astype(np.int64) for index in (row, column))
         return np.asarray(np.where(inside, self.distances_m[row, column], np.nan))
 
-    def furniture_log_odds(self, xy_m: FloatArray) -> FloatArray:
-        """How much likelier person-sized things at these points are furniture than people.
+    def furniture_log_odds(self, distance_m: FloatArray) -> FloatArray:
+        """How much likelier person-sized things so far from occupied cells are no people.
 
         Furniture of the map lies on its occupied cells, with a Gaussian spread for the errors of
         the map and of the robot's pose; people, and furniture that was moved, are anywhere.
 
         Args:
-            xy_m: Shape (N, 2).
+            distance_m: Shape (N,), of what a scan shows of them; NaN where the map does not know.
 
         Returns:
             Shape (N,), natural logarithm: 3 on an occupied cell, 0 about one and a half cells and
@@ -96,6 +93,5 @@ class RoomMap:
         reach_m = _REACH_CELLS * self.resolution_m + _REACH_M
         # The spread with which both kinds are equally likely at the reach.
         spread_m = reach_m / np.sqrt(2.0 * np.log(_NEAR_ODDS / (1.0 - _FAR_ODDS)))
-        distance_m = self.distance_m(xy_m)
         near = _NEAR_ODDS * np.exp(-0.5 * (distance_m / spread_m) ** 2)
         return np.where(np.isnan(distance_m), 0.0, np.log(near + _FAR_ODDS))

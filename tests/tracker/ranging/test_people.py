@@ -21,11 +21,26 @@ def test_a_leg_is_not_paired_with_a_post_of_the_map(cast):
     scan = cast([(2.0, 0.0, 0.06), (2.0, 0.35, 0.07)])
     (between,) = find_people(scan, **LIMITS).xy_m
     assert between == pytest.approx((2.0, 0.175), abs=0.03)
-    people = find_people(scan, **LIMITS, room=room_with((2.0, 0.0)))
+    on_map = [(2.0, 0.0), (1.95, 0.0), (2.0, 0.05), (2.0, -0.05)]
+    people = find_people(scan, **LIMITS, room=room_with(*on_map))
     assert people.xy_m == pytest.approx(np.array([(2.0, 0.0), (2.0, 0.35)]), abs=0.03)
     post, leg = people.furniture_log_odds
     assert post > 2.0
     assert leg < 0.0
+
+
+def test_a_leg_that_touches_a_post_is_one_piece_with_it_and_no_furniture(cast):
+    touching = [(2.0, 0.0, 0.03), (2.0, 0.1, 0.07)]
+    room = room_with((1.98, 0.0))
+    (alone,) = find_people(cast(touching[:1]), **LIMITS, room=room).furniture_log_odds
+    (together,) = find_people(cast(touching), **LIMITS, room=room).furniture_log_odds
+    assert alone > 2.0
+    assert together < 1.5
+
+
+def test_what_stands_where_the_map_does_not_know_may_be_anybody(cast):
+    room = RoomMap.of(OccupancyGrid(0, "map", 0.05, (5.0, 5.0, 0.0), np.zeros((9, 9), np.int8)))
+    assert find_people(cast([(2.0, 0.0, 0.07)]), **LIMITS, room=room).furniture_log_odds == 0.0
 
 
 def test_without_a_map_nothing_is_known_of_furniture(cast, legs):

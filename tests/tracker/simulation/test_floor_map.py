@@ -47,7 +47,7 @@ def test_every_post_of_the_scenes_is_found_on_its_map(name):
     posts = np.array([post[:2] for table in scene.tables for post in table_posts(table)])
     room = RoomMap.of(floor_map(scene))
     assert (room.distance_m(posts) <= 0.08).all()
-    assert (room.furniture_log_odds(posts) > 2.0).all()
+    assert (room.furniture_log_odds(room.distance_m(posts)) > 2.0).all()
 
 
 def test_a_scene_without_anything_has_a_map_all_the_same():
