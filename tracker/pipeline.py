@@ -32,6 +32,7 @@ from tracker.perception.upright import Turn, upright_turn
 from tracker.picture_camera import PictureCameras, configured_camera
 from tracker.ranging import (
     Background,
+    Postures,
     bearing_span_rad,
     expected_hands,
     measure_people,
@@ -87,6 +88,7 @@ class Pipeline:
         self._cameras = PictureCameras(self.config, image_topic)
         self._sustained_ns = -1
         self._background = Background()
+        self._postures = Postures()
         self._last_stamp_ns: int | None = None
         self._camera_locator = CameraLocator()
         self._map_locator = MapLocator()
@@ -247,6 +249,7 @@ class Pipeline:
             background=self._background if self.config.background_after_s > 0.0 else None,
             people=people,
             motion=place.motion,
+            postures=self._postures,
         )
         beyond = len(hands) - np.count_nonzero(measurements.hand >= 0)
         if beyond:
@@ -263,6 +266,7 @@ class Pipeline:
             view=self._camera_view(image, fixed_from_camera),
             scan_view=self._scan_view(scan),
         )
+        self._postures.learn(tracks, hands)
         customers_xy_m = tracks.mean[tracks.confirmed, :2]
         self._background.spare(customers_xy_m, self.config.same_person_distance_m)
         pose = approach = None
@@ -313,6 +317,7 @@ class Pipeline:
     def _forget(self) -> None:
         self.tracker.reset()
         self._background.reset()
+        self._postures.reset()
         self.detector.reset()
         self._camera_locator.reset()
         self._sustained_ns = -1

@@ -62,6 +62,7 @@ def test_a_tracker_that_is_right_has_no_error(real_paths):
     figures = row(real_paths, lambda _: {3: (2, 0), 5: (4, 1)}, lambda _: {1: (2, 0), 2: (4, 1)})
     for name in ("gospa_m", "switches_per_min", "nees", "missed_share", "false_tracks"):
         assert figures[name] == 0.0, name
+    assert figures["covered_share"] == 1.0
     assert np.isnan(figures["gone_s"])
 
 

@@ -8,12 +8,14 @@ from tracker.ranging.locating import locate_scan
 from tracker.ranging.measuring import measure_people, scan_people
 from tracker.ranging.odd_scans import mend_scan
 from tracker.ranging.people import PersonClusters, find_people
+from tracker.ranging.postures import Postures
 from tracker.ranging.rays import body_pose, hand_rays
 from tracker.ranging.room_map import RoomMap
 
 __all__ = [
     "Background",
     "PersonClusters",
+    "Postures",
     "RoomMap",
     "beam_index",
     "bearing_span_rad",

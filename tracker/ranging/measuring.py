@@ -13,6 +13,7 @@ from tracker.ranging.bias import bias_covariance
 from tracker.ranging.hand_pairs import pair_hands
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.person_range import owners
+from tracker.ranging.postures import Postures
 from tracker.ranging.ray_range import range_along_rays
 from tracker.ranging.rays import HandRays, hand_rays
 from tracker.ranging.room_map import RoomMap
@@ -43,6 +44,7 @@ def measure_people(
     background: Background | None = None,
     people: PersonClusters | None = None,
     motion: FloatArray = _STILL,
+    postures: Postures | None = None,
 ) -> Measurements:
     """Turn one image's hands and the scan beside it into measurements in the fixed frame.
 
@@ -59,6 +61,7 @@ def measure_people(
             whatever is person-sized for a person.
         people: From `scan_people`, where that has been asked already.
         motion: Shape (3,): x_mps, y_mps, yaw_radps of camera and laser in the fixed frame.
+        postures: Who was seen to sit; None where nobody remembers.
 
     Returns:
         First one row for each hand whose direction is known, then the clusters that no hand has
@@ -83,6 +86,9 @@ def measure_people(
         claimed = owners(rays, hands, camera, people, is_background, config.arm_reach_m)
         range_m = np.full(len(hands), np.nan)
 
+    seated = np.full(len(people), np.nan)
+    if postures is not None:
+        seated = postures.at(people.xy_m, config.same_person_distance_m)
     seen = claimed >= 0
     alone = np.flatnonzero(~seen & np.isfinite(rays.bearing_rad))
     from_hands = _hand_measurements(alone, rays, range_m, hands, pair, motion, config)
@@ -96,7 +102,9 @@ def measure_people(
             raised=hands.raised[seen],
             person=claimed[seen],
             hand=np.flatnonzero(seen),
-            seated=hands.seated[seen],
+            seated=np.where(
+                np.isnan(hands.seated[seen]), seated[claimed[seen]], hands.seated[seen]
+            ),
         )
         from_hands = Measurements.concatenate(from_hands, of_bodies)
     callers = claimed[hands.raised & seen]
@@ -107,7 +115,14 @@ def measure_people(
     # Whom a hand stands for, up or not, is not measured twice: the second would be a twin.
     free = np.setdiff1d(np.flatnonzero(~is_background), claimed[seen])
     from_scan = _body_measurements(
-        people.xy_m[free], rays.origin, motion, config, raised=False, person=free, hand=-1
+        people.xy_m[free],
+        rays.origin,
+        motion,
+        config,
+        raised=False,
+        person=free,
+        hand=-1,
+        seated=seated[free],
     )
     return Measurements.concatenate(from_hands, from_scan)
 
@@ -174,13 +189,13 @@ def _body_measurements(
     raised: BoolArray | bool,
     person: IntArray,
     hand: IntArray | int,
-    seated: FloatArray | float = np.nan,
+    seated: FloatArray,
 ) -> Measurements:
     """Person clusters as bearing and range from the camera, noise alike in both directions.
 
     Of somebody who sits the laser sees shins, and legs of table and chair among them.
     """
-    sits = np.broadcast_to(np.nan_to_num(seated, nan=0.0), len(xy_m))
+    sits = np.nan_to_num(seated, nan=0.0)
     offset = xy_m - origin[:2]
     range_m = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), _RANGE_MIN_M)
     heading = np.arctan2(offset[:, 1], offset[:, 0])
