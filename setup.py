@@ -18,7 +18,10 @@ setup(
     python_requires=">=3.10",
     packages=[*find_packages(include=["tracker*", "nodes*"]), "tracker.scenes"],
     package_dir={"tracker.scenes": "config/scenes"},
-    package_data={"tracker": ["py.typed", "report/page.html"], "tracker.scenes": ["*.yaml"]},
+    package_data={
+        "tracker": ["py.typed", "report/page.html", "dashboard/page/*"],
+        "tracker.scenes": ["*.yaml"],
+    },
     extras_require={
         "test": [
             "pytest>=8.2,<10",
@@ -32,6 +35,10 @@ setup(
             "cyclonedds==11.0.1; python_version < '3.14'",
             "distributed>=2024.8,<2027",
             "pyarrow>=16,<26",
+            "starlette>=0.40,<2",
+            "uvicorn>=0.30,<1",
+            "websockets>=13,<17",
+            "playwright>=1.45,<2",
             "nbclient>=0.10,<0.12",
             "ipykernel>=6.29,<8",
             "ipywidgets>=8.1,<9",

@@ -29,8 +29,8 @@ FLOORS = [
     {"evaluation.studies"},
     {"evaluation.detection", "evaluation.tuning"},
     {"report"},
-    {"replay_outputs"},
-    {"replay"},
+    {"replay_outputs", "dashboard"},
+    {"replay", "live"},
     {"progress", "command_help"},
     {"cli"},
 ]

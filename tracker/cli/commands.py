@@ -11,9 +11,10 @@ import typer
 
 from tracker.cli.demo import demo_command
 from tracker.cli.evaluate import evaluate_command
-from tracker.cli.live import echo_command, play_command
+from tracker.cli.live import live_command
 from tracker.cli.models import models_app
 from tracker.cli.monte_carlo import monte_carlo_command
+from tracker.cli.play import echo_command, play_command
 from tracker.cli.replay import replay_command
 from tracker.cli.simulate import simulate_command
 from tracker.cli.tune import tune_command
@@ -40,6 +41,7 @@ def _root(version: VersionOption = False) -> None:
 
 for _name, _command in (
     ("demo", demo_command),
+    ("live", live_command),
     ("replay", replay_command),
     ("simulate", simulate_command),
     ("play", play_command),

@@ -1,74 +1,98 @@
-"""`raised-hand play` and `echo`: meet ROS 2 nodes without ROS."""
+"""`raised-hand live`: a camera, a stream, or a scene as if live, and the page that shows it."""
 
 from __future__ import annotations
 
-import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tracker.cli.options import complain, console, errors
+from tracker.cli.options import (
+    ConfigOption,
+    ParameterOption,
+    check_is_no_folder,
+    console,
+    errors,
+    note,
+    parameters_from,
+)
 from tracker.errors import ConfigError
-from tracker.progress import bar
-from tracker.wording import one_line
+from tracker.progress import fetch_models_if_needed, telling
+from tracker.wording import counted
+
+#: The port of the page where nobody names another one.
+_PORT = 8750
 
 
-def play_command(
-    source: Annotated[Path, typer.Argument(help="rosbag2 folder, .mcap, .db3, .bag, video.")],
-    rate: Annotated[float, typer.Option("--rate", "-r", help="Times as fast.")] = 1.0,
-    loop: Annotated[bool, typer.Option("--loop", "-l", help="Begin again at the end.")] = False,
-    start_offset: Annotated[float, typer.Option(help="Begin so many seconds in.", min=0.0)] = 0.0,
-    clock: Annotated[bool, typer.Option("--clock", help="Publish /clock as well.")] = False,
-    best_effort: Annotated[
-        bool, typer.Option("--best-effort", help="Offer sensors' data as their drivers do.")
+def live_command(
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A camera's number, a device as /dev/video0, an address as rtsp://..., a "
+            "GStreamer pipeline that ends in `appsink`, or a recording or video, which plays as "
+            "if it were live."
+        ),
+    ] = "0",
+    simulated: Annotated[
+        bool, typer.Option("--simulated", help="No camera: the demo's restaurant, rendered live.")
     ] = False,
-    topic: Annotated[list[str] | None, typer.Option(help="Only this; may be repeated.")] = None,
-    remap: Annotated[list[str] | None, typer.Option(help="FROM:=TO; may be repeated.")] = None,
-    delay: Annotated[float, typer.Option(help="Seconds before the first message.", min=0.0)] = 1.0,
+    scene: Annotated[str, typer.Option(help="Scene of --simulated.")] = "restaurant",
+    record: Annotated[
+        Path | None, typer.Option(help="Record an .mcap that `raised-hand replay` reads.")
+    ] = None,
+    host: Annotated[
+        str, typer.Option(help="Where the page listens; others than 127.0.0.1 get a token.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Of the page; 0 takes any.", min=0, max=65535)] = _PORT,
+    page: Annotated[bool, typer.Option("--page/--no-page", help="Serve the page.")] = True,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
+    ] = True,
+    config: ConfigOption = None,
+    param: ParameterOption = None,
 ) -> None:
-    """Publish a recording in real time to ROS 2 nodes, without ROS (needs the extra `dds`).
+    """Watch a camera live: who raises a hand, who waits, on a page in the browser.
 
-    Nodes are met as ROS 2 does: by ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE.
+    Ends with Ctrl-C, or with the recording. Needs the extra `live` for the page:
+    pip install "raised-hand-tracker[live]".
     """
-    from nodes.play import play
+    import webbrowser
 
-    if not source.exists():
-        raise ConfigError(f"{source}: there is no such file or folder.")
-    with bar(errors, "Playing") as progress:
-        played = play(
-            source,
-            rate=rate,
-            loop=loop,
-            start_offset_s=start_offset,
-            clock=clock,
-            best_effort=best_effort,
-            topics=topic,
-            remaps=remap or (),
-            delay_s=delay,
-            progress=progress,
+    from tracker.dashboard import Dashboard, DashboardServer
+    from tracker.live.run import run_live
+    from tracker.live.sources import live_events, paced, simulated_events
+    from tracker.live.steering import PipelineSteering
+    from tracker.live.teller import Teller
+    from tracker.pipeline import Pipeline
+    from tracker.recording import Topics
+    from tracker.tracking.machine_frame import begin_compiling
+
+    parameters = parameters_from(config, param)
+    check_is_no_folder("--record", record)
+    if record is not None and record.suffix.lower() != ".mcap":
+        raise ConfigError(f"--record is {record}; needed is a name that ends in .mcap.")
+    title = f"simulated: {scene}" if simulated else f"camera {source}"
+    with ExitStack() as held:
+        if simulated:
+            events = paced(simulated_events(scene, 1, parameters.processing_rate))
+        else:
+            frame = parameters.fixed_frame
+            events = held.enter_context(live_events(source, Topics(), note, frame))
+        fetch_models_if_needed(errors)
+        begin_compiling(telling(errors), telling(errors))  # frames do not wait for it
+        pipeline = Pipeline(parameters)
+        dashboard = Dashboard(parameters, title, PipelineSteering(pipeline))
+        if page:
+            server = held.enter_context(DashboardServer(dashboard, host, port))
+            console.print(f"The page: {server.url}  (Ctrl-C ends it)", highlight=False)
+            if browser:
+                webbrowser.open(server.url)
+        teller = Teller(lambda text: console.print(text, highlight=False))
+        frames = run_live(
+            events,
+            pipeline,
+            watchers=[dashboard.watch, teller.watch],
+            record=record,
         )
-    for sentence in played.skipped + played.doubts:
-        complain(sentence)
-    for name, count in played.counts.items():
-        console.print(f"{one_line(name)}: {count}", highlight=False, soft_wrap=True)
-
-
-def echo_command(
-    topic: Annotated[str, typer.Argument(help="As /hand_raised.")],
-    once: Annotated[bool, typer.Option("--once", help="Print one message.")] = False,
-    count: Annotated[int | None, typer.Option(help="Print so many messages.", min=1)] = None,
-    timeout: Annotated[float | None, typer.Option(help="Seconds without a message.")] = None,
-) -> None:
-    """Print what ROS 2 nodes publish on a topic, without ROS (needs the extra `dds`)."""
-    from nodes.echo import echo
-
-    try:
-        echo(
-            topic,
-            count=1 if once else count,
-            timeout_s=timeout,
-            write=lambda text: print(text, flush=True),
-        )
-    except BrokenPipeError:  # `| head` has seen enough
-        sys.stdout = None  # nothing is left to be flushed
+    console.print(f"{counted(frames, 'image')} seen.")

@@ -1,5 +1,6 @@
 """The node in a process of its own, played to by another, as on a robot."""
 
+import re
 import time
 from pathlib import Path
 
@@ -331,16 +332,17 @@ def test_the_example_waiter_serves_who_calls_and_who_is_unknown_is_refused(
     waiter = run(example, "--pretend-drive-s", 2, "--service-s", 0.5, "--count", 1, name="waiter")
     player = play("--loop", 2)
     assert waiter.wait(60.0) == 0, waiter.log()
-    assert "served: 1" in waiter.log()
+    number = re.search(r"served: (\d+)\n", waiter.log()).group(1)
     command = ear.node.create_publisher(String, "hand_detector/command", 10)
     ear.until(command.get_subscription_count)
     command.publish(String(data="serve 99"))
     ear.until(lambda: len(ear.heard[Output.ANSWERS]) >= 3)
     assert [item.data.partition(":")[0] for item in ear.messages(Output.ANSWERS)] == [
-        "serve 1", "served 1", "serve 99",
+        f"serve {number}", f"served {number}", "serve 99",
     ]  # fmt: skip
     assert "refused: no customer has the number 99" in ear.messages(Output.ANSWERS)[-1].data
-    assert ear.messages(Output.WAITING_LIST)[-1].detections[0].id == "1"
+    lists = ear.messages(Output.WAITING_LIST)
+    assert any(item.id == number for said in lists for item in said.detections)
     raised = [len(item.detections) > 0 for item in ear.messages(Output.RAISED_HANDS)]
     assert raised == [item.data for item in ear.messages(Output.HAND_RAISED)][: len(raised)]
     player.kill()

@@ -1,0 +1,121 @@
+"use strict";
+// The room from above: x of the map points up, y to the left. Meters in, pixels out.
+
+const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+class Room {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.bounds = null; // xmin, xmax, ymin, ymax in the map; follows what there is to see, slowly
+  }
+
+  draw(state) {
+    const canvas = this.canvas, dense = window.devicePixelRatio || 1;
+    const width = canvas.clientWidth, height = canvas.clientHeight;
+    if (!width || !height) return;
+    canvas.width = Math.round(width * dense);
+    canvas.height = Math.round(height * dense);
+    const pen = canvas.getContext("2d");
+    pen.setTransform(dense, 0, 0, dense, 0, 0);
+    this.follow(state);
+    const [xmin, xmax, ymin, ymax] = this.bounds;
+    const scale = Math.min(width / (ymax - ymin), height / (xmax - xmin));
+    const at = (x, y) => [
+      width / 2 - (y - (ymin + ymax) / 2) * scale,
+      height / 2 - (x - (xmin + xmax) / 2) * scale,
+    ];
+    this.grid(pen, at, width, height);
+    pen.fillStyle = color("soft");
+    for (const [x, y] of state.scan) {
+      const [left, top] = at(x, y);
+      pen.fillRect(left - 1, top - 1, 2, 2);
+    }
+    if (state.robot) this.robot(pen, at, state.robot, scale);
+    for (const caller of state.callers) {
+      if (!caller.in_sight && ["waiting", "being_served"].includes(caller.state)) this.lost(pen, at, caller);
+    }
+    for (const person of state.people) this.person(pen, at, person, scale, state.callers);
+  }
+
+  follow(state) {
+    const places = [...state.people, ...state.callers.filter((one) => ["waiting", "being_served"].includes(one.state))];
+    const xs = places.map((one) => one.x), ys = places.map((one) => one.y);
+    const [x, y] = state.robot || [0, 0];
+    for (const [px, py] of state.scan) if (Math.hypot(px - x, py - y) < 6) { xs.push(px); ys.push(py); }
+    xs.push(x - 1, x + 2.5); ys.push(y - 2, y + 2);
+    const wanted = [Math.min(...xs) - .4, Math.max(...xs) + .4, Math.min(...ys) - .4, Math.max(...ys) + .4];
+    this.bounds = this.bounds ? this.bounds.map((old, i) => old + (wanted[i] - old) * .1) : wanted;
+  }
+
+  grid(pen, at, width, height) {
+    const [xmin, xmax, ymin, ymax] = this.bounds;
+    pen.strokeStyle = color("line");
+    pen.lineWidth = 1;
+    pen.beginPath();
+    for (let x = Math.ceil(xmin - 5); x < xmax + 5; x++) { const top = at(x, 0)[1]; pen.moveTo(0, top); pen.lineTo(width, top); }
+    for (let y = Math.ceil(ymin - 5); y < ymax + 5; y++) { const left = at(0, y)[0]; pen.moveTo(left, 0); pen.lineTo(left, height); }
+    pen.stroke();
+    pen.fillStyle = color("soft");
+    pen.font = "12px system-ui, sans-serif";
+    pen.textAlign = "left";
+    pen.fillText("squares of 1 m", 6, height - 6);
+  }
+
+  robot(pen, at, [x, y, yaw], scale) {
+    const [left, top] = at(x, y), size = Math.max(.25 * scale, 9);
+    pen.save();
+    pen.translate(left, top);
+    pen.rotate(-yaw);
+    pen.fillStyle = color("ink");
+    pen.beginPath();
+    pen.moveTo(0, -size); pen.lineTo(.7 * size, .8 * size); pen.lineTo(-.7 * size, .8 * size);
+    pen.closePath();
+    pen.fill();
+    pen.restore();
+  }
+
+  person(pen, at, person, scale, callers) {
+    const shade = color(person.selected ? "selected" : person.up ? "up" : "down");
+    const [left, top] = at(person.x, person.y);
+    pen.strokeStyle = pen.fillStyle = shade;
+    pen.lineWidth = 2;
+    pen.globalAlpha = .5;
+    pen.beginPath();
+    person.trail.forEach(([x, y], i) => pen[i ? "lineTo" : "moveTo"](...at(x, y)));
+    pen.stroke();
+    pen.globalAlpha = .18;
+    const [long, short, angle] = person.ellipse;
+    pen.beginPath();
+    pen.ellipse(left, top, Math.max(long * scale, 1), Math.max(short * scale, 1), -angle - Math.PI / 2, 0, 2 * Math.PI);
+    pen.fill();
+    pen.globalAlpha = 1;
+    pen.stroke();
+    pen.beginPath();
+    pen.arc(left, top, 6, 0, 2 * Math.PI);
+    pen.fill();
+    const known = callers.find((one) => one.track === person.id);
+    this.label(pen, left, top, `#${known ? known.id : person.id}${person.up ? " hand up" : ""}`, shade);
+  }
+
+  lost(pen, at, caller) {
+    const [left, top] = at(caller.x, caller.y);
+    pen.strokeStyle = color("soft");
+    pen.lineWidth = 2;
+    pen.setLineDash([5, 4]);
+    pen.beginPath();
+    pen.arc(left, top, 12, 0, 2 * Math.PI);
+    pen.stroke();
+    pen.setLineDash([]);
+    this.label(pen, left, top, `#${caller.id}`, color("soft"));
+  }
+
+  label(pen, left, top, words, shade) {
+    pen.font = "600 14px system-ui, sans-serif";
+    pen.textAlign = "center";
+    pen.lineWidth = 4;
+    pen.strokeStyle = color("card");
+    pen.strokeText(words, left, top - 14);
+    pen.fillStyle = shade;
+    pen.fillText(words, left, top - 14);
+  }
+}

@@ -1,0 +1,31 @@
+"""What is seen, in words: one line whenever a hand goes up, or a call changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tracker.containers import CallState, CameraImage, FrameResult
+
+
+class Teller:
+    """A watcher that says what changes.
+
+    Args:
+        say: Takes each line.
+    """
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
+        self._before: dict[int, tuple[bool, CallState]] = {}
+
+    def watch(self, image: CameraImage, result: FrameResult, busy_s: float) -> None:
+        """Take in one frame."""
+        now = {caller.id: (caller.is_up, caller.state) for caller in result.waiting_list.callers}
+        for caller in result.waiting_list.callers:
+            was_up, state = self._before.get(caller.id, (False, CallState.WAITING))
+            x, y = caller.xy_m
+            if caller.is_up and not was_up:
+                self._say(f"#{caller.id} raises a hand at {x:.1f}, {y:.1f} m")
+            if caller.state is not state:
+                self._say(f"#{caller.id} {caller.state.value.replace('_', ' ')}")
+        self._before = now
