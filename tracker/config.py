@@ -282,8 +282,8 @@ class Config(BaseModel):
 
     # Ranging.
     ranging: Literal["person", "spec"] = _parameter(
-        "person", "How far is the hand? person: the nearest person-sized segment of the scan "
-        "beside the hand's ray; spec: the median of the beams at the ray (algorithm 5).",
+        "person", "How far is the hand? person: as far as its owner, whom its ray and size tell "
+        "among all people; spec: the median of the beams at the ray (algorithm 5).",
         group="ranging", live=True,
     )  # fmt: skip
     scan_window_beams: int = _parameter(

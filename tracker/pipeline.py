@@ -31,8 +31,7 @@ from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.perception.upright import Turn, upright_turn
 from tracker.picture_camera import PictureCameras, configured_camera
 from tracker.ranging import (
-    Background,
-    Postures,
+    Memory,
     bearing_span_rad,
     expected_hands,
     measure_people,
@@ -87,8 +86,7 @@ class Pipeline:
         self.camera = configured_camera(self.config)
         self._cameras = PictureCameras(self.config, image_topic)
         self._sustained_ns = -1
-        self._background = Background()
-        self._postures = Postures()
+        self._memory = Memory()
         self._last_stamp_ns: int | None = None
         self._camera_locator = CameraLocator()
         self._map_locator = MapLocator()
@@ -239,6 +237,7 @@ class Pipeline:
             piecewise.expect(self._turn.boxes(expected_px, size))
         upright_hands = self.detector.find(self._turn.picture(image))
         hands = self._turn.hands_back(upright_hands, size)
+        tracked = self.tracker.people
         measurements = measure_people(
             hands,
             self.camera,
@@ -246,10 +245,11 @@ class Pipeline:
             scan,
             self.config,
             sustain=scan is not None and scan.stamp_ns > self._sustained_ns,
-            background=self._background if self.config.background_after_s > 0.0 else None,
             people=people,
             motion=place.motion,
-            postures=self._postures,
+            memory=self._memory,
+            tracked=tracked,
+            stamp_ns=image.stamp_ns,
         )
         beyond = len(hands) - np.count_nonzero(measurements.hand >= 0)
         if beyond:
@@ -265,10 +265,11 @@ class Pipeline:
             robot_xy_m,
             view=self._camera_view(image, fixed_from_camera),
             scan_view=self._scan_view(scan),
+            likeness=self._memory.ownership.likeness(measurements, len(tracked)),
         )
-        self._postures.learn(tracks, hands)
+        self._memory.postures.learn(tracks, hands)
         customers_xy_m = tracks.mean[tracks.confirmed, :2]
-        self._background.spare(customers_xy_m, self.config.same_person_distance_m)
+        self._memory.background.spare(customers_xy_m, self.config.same_person_distance_m)
         pose = approach = None
         if place.is_located:
             pose = customer_pose(tracks, robot_xy_m, self.config.fixed_frame, self.config)
@@ -316,8 +317,7 @@ class Pipeline:
 
     def _forget(self) -> None:
         self.tracker.reset()
-        self._background.reset()
-        self._postures.reset()
+        self._memory.reset()
         self.detector.reset()
         self._camera_locator.reset()
         self._sustained_ns = -1
@@ -355,7 +355,7 @@ class Pipeline:
                 "the first transform has come: tracks start again in the fixed frame",
             )
             self.tracker.reset()
-            self._background.reset()
+            self._memory.background.reset()
         if place.moved is not None:
             self.tracker.doubt(place.moved, place.unseen_s)
         return place

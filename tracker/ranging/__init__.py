@@ -6,7 +6,9 @@ from tracker.ranging.bearing_span import bearing_span_rad
 from tracker.ranging.expected_hands import expected_hands
 from tracker.ranging.locating import locate_scan
 from tracker.ranging.measuring import measure_people, scan_people
+from tracker.ranging.memory import Memory
 from tracker.ranging.odd_scans import mend_scan
+from tracker.ranging.ownership import Ownership
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.postures import Postures
 from tracker.ranging.rays import body_pose, hand_rays
@@ -14,6 +16,8 @@ from tracker.ranging.room_map import RoomMap
 
 __all__ = [
     "Background",
+    "Memory",
+    "Ownership",
     "PersonClusters",
     "Postures",
     "RoomMap",

@@ -17,9 +17,8 @@ from tracker.ranging.people import PersonClusters
 
 #: What moves less than this stands still: noise of a cluster's middle and of the robot's pose.
 STILL_M = 0.12
-#: ... and something slim that stands alone is furniture after this: who stands shows both legs, or
-#: one for a moment (guess).
-SLIM_AFTER_S = 3.0
+#: People who stand, and those who sit, stay exactly where they are for so long (guesses).
+_STANDS_S, _SITS_S = 10.0, 300.0
 #: A beam that ends this far behind a place has passed through it ...
 _THROUGH_M = 0.3
 #: ... and so many scans in a row are no drop-outs.
@@ -49,8 +48,8 @@ class Background:
         Args:
             scan: The scan, in the fixed frame.
             clusters: The person-sized things found in it.
-            after_s: What has stood still for so long is background; what is slim and alone is so
-                sooner, by `SLIM_AFTER_S`.
+            after_s: What has stood still for so long is background; what looks e times less like a
+                person than like anything else is so e times sooner.
         """
         lapse_s = 0.0
         if self._stamp_ns is not None:
@@ -62,24 +61,25 @@ class Background:
         rows = np.flatnonzero(is_there)
         seen = places.sightings + is_there
         gain = np.maximum(1.0 / np.maximum(seen[rows], 1), _GAIN_MIN)[:, None]
-        xy = places.xy_m.copy()
-        needs_s = np.full(len(places), after_s)
+        xy, kind = places.xy_m.copy(), places.log_odds.copy()
         if len(rows):
             cluster = distance[rows].argmin(axis=1)
             xy[rows] += gain * (clusters.xy_m[cluster] - xy[rows])
-            needs_s[rows[clusters.is_slim[cluster]]] = min(after_s, SLIM_AFTER_S)
+            kind[rows] += gain[:, 0] * (clusters.log_odds[cluster] - kind[rows])
         stood_s = places.stood_s + lapse_s * is_there
         is_through = ~is_there & _is_looked_through(places.xy_m, scan)
         through = np.where(is_through, places.through + 1, places.through * ~is_there)
         seen_ns = np.where(is_there, scan.stamp_ns, places.seen_ns)
+        needs_s = after_s * np.exp(np.minimum(kind, 0.0))
         is_background = places.is_background | (stood_s >= needs_s)
-        places = _Places(xy, stood_s, seen, seen_ns, through, is_background)
+        places = _Places(xy, kind, stood_s, seen, seen_ns, through, is_background)
         forgotten_ns = scan.stamp_ns - round(after_s * 1e9)
         places = places[
             (through < _THROUGH_SCANS) & (places.is_background | (seen_ns >= forgotten_ns))
         ]
-        new = clusters.xy_m[distance.min(axis=0, initial=np.inf) >= STILL_M]
-        places = places.append(_Places.begin(new, scan.stamp_ns))
+        is_new = distance.min(axis=0, initial=np.inf) >= STILL_M
+        new = _Places.begin(clusters.xy_m[is_new], clusters.log_odds[is_new], scan.stamp_ns)
+        places = places.append(new)
         if len(places) > _PLACES_MAX:
             order = np.argsort(places.seen_ns, kind="stable")
             places = places[order[-_PLACES_MAX:]]
@@ -90,6 +90,23 @@ class Background:
         known = self._places.xy_m[self._places.is_background]
         return np.asarray((_distances(known, xy_m) < STILL_M).any(axis=0))
 
+    def log_person(self, clusters: PersonClusters) -> FloatArray:
+        """Log-probability that each cluster is a person, shape (C,).
+
+        By what it looks like, in all scans of its place, and by how long it has not moved, which
+        lasts for minutes where somebody sits.
+        """
+        distance = _distances(clusters.xy_m, self._places.xy_m)
+        log_odds, stood_s = clusters.log_odds, np.zeros(len(clusters))
+        if distance.size:
+            place = distance.argmin(axis=1)
+            is_known = distance.min(axis=1) < STILL_M
+            log_odds = np.where(is_known, self._places.log_odds[place], log_odds)
+            stood_s = np.where(is_known, self._places.stood_s[place], stood_s)
+        sits = np.exp(-stood_s / _SITS_S)
+        log_odds = log_odds + np.log(0.5 * np.exp(-stood_s / _STANDS_S) + 0.5 * sits)
+        return np.asarray(-np.logaddexp(0.0, -log_odds))
+
     def spare(self, customers_xy_m: FloatArray, distance_m: float) -> None:
         """A customer who stands still does not become background; what is one already stays."""
         places = self._places
@@ -99,7 +116,11 @@ class Background:
 
     def free(self, xy_m: FloatArray) -> None:
         """A hand was raised there: whoever stands at these points is somebody."""
-        self._places = self._places[~(_distances(self._places.xy_m, xy_m) < STILL_M).any(axis=1)]
+        places = self._places
+        is_near = (_distances(places.xy_m, xy_m) < STILL_M).any(axis=1)
+        stood_s = np.where(is_near, 0.0, places.stood_s)
+        is_background = places.is_background & ~is_near
+        self._places = replace(places, stood_s=stood_s, is_background=is_background)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,6 +128,7 @@ class _Places:
     """Row i of each array is one place."""
 
     xy_m: FloatArray  # (K, 2), in the fixed frame
+    log_odds: FloatArray  # (K,): `PersonClusters.log_odds`, mean over the sightings
     stood_s: FloatArray  # (K,): how long something has been seen there
     sightings: IntArray  # (K,)
     seen_ns: IntArray  # (K,)
@@ -128,14 +150,16 @@ class _Places:
         )
 
     @staticmethod
-    def begin(xy_m: FloatArray, stamp_ns: int) -> _Places:
+    def begin(xy_m: FloatArray, log_odds: FloatArray, stamp_ns: int) -> _Places:
         count = len(xy_m)
         one, none = np.ones(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
-        return _Places(xy_m, np.zeros(count), one, one * stamp_ns, none, none.astype(bool))
+        return _Places(
+            xy_m, log_odds, np.zeros(count), one, one * stamp_ns, none, none.astype(bool)
+        )
 
     @staticmethod
     def none() -> _Places:
-        return _Places.begin(np.zeros((0, 2)), 0)
+        return _Places.begin(np.zeros((0, 2)), np.zeros(0), 0)
 
 
 def _distances(a_m: FloatArray, b_m: FloatArray) -> FloatArray:

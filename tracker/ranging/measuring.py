@@ -6,14 +6,22 @@ import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import BoolArray, FloatArray, Hands, IntArray, LocatedScan, Measurements
+from tracker.containers import (
+    BoolArray,
+    FloatArray,
+    Hands,
+    IntArray,
+    LocatedScan,
+    Measurements,
+    Tracks,
+)
 from tracker.geometry import RigidTransform, normalize_angle
 from tracker.ranging.background import Background
 from tracker.ranging.bias import bias_covariance
 from tracker.ranging.hand_pairs import pair_hands
+from tracker.ranging.memory import Memory
 from tracker.ranging.people import PersonClusters, find_people
-from tracker.ranging.person_range import owners
-from tracker.ranging.postures import Postures
+from tracker.ranging.person_range import BESIDE_M
 from tracker.ranging.ray_range import range_along_rays
 from tracker.ranging.rays import HandRays, hand_rays
 from tracker.ranging.room_map import RoomMap
@@ -41,10 +49,11 @@ def measure_people(
     config: Config,
     *,
     sustain: bool = True,
-    background: Background | None = None,
     people: PersonClusters | None = None,
     motion: FloatArray = _STILL,
-    postures: Postures | None = None,
+    memory: Memory | None = None,
+    tracked: Tracks | None = None,
+    stamp_ns: int = 0,
 ) -> Measurements:
     """Turn one image's hands and the scan beside it into measurements in the fixed frame.
 
@@ -57,11 +66,12 @@ def measure_people(
         config: The ranging group.
         sustain: Whether the scan's other person clusters are measurements too. One scan may serve
             several images; it speaks for itself only once.
-        background: What has been learnt of the room so far, and learns from this scan; None takes
-            whatever is person-sized for a person.
         people: From `scan_people`, where that has been asked already.
         motion: Shape (3,): x_mps, y_mps, yaw_radps of camera and laser in the fixed frame.
-        postures: Who was seen to sit; None where nobody remembers.
+        memory: What earlier images and scans told, which learns from these; None judges by these
+            alone, and takes whatever is person-sized for a person.
+        tracked: Everybody known at the last image; None means nobody.
+        stamp_ns: The image's.
 
     Returns:
         First one row for each hand whose direction is known, then the clusters that no hand has
@@ -72,26 +82,32 @@ def measure_people(
     pair = np.where(pair >= 0, pair + _PAIR_OFFSET, -1)
     if people is None:
         people = scan_people(scan, config)
+    memory = Memory() if memory is None else memory
+    background = memory.background if config.background_after_s > 0.0 else Background()
+    if sustain and scan is not None and config.background_after_s > 0.0:
+        background.observe(scan, people, config.background_after_s)
     is_background = people.furniture_log_odds > _MAPPED_LOG_ODDS
-    if background is not None and scan is not None:
-        if sustain:
-            background.observe(scan, people, config.background_after_s)
-        is_background |= background.holds(people.xy_m)
+    is_background |= background.holds(people.xy_m)
+    side, range_m = np.zeros(len(hands)), np.full(len(hands), np.nan)
+    range_std_m = np.full(len(hands), config.range_std_m)
+    claimed = np.full(len(hands), -1, dtype=np.int64)
     if config.ranging == "spec":
-        claimed = np.full(len(hands), -1, dtype=np.int64)
-        range_m = np.full(len(hands), np.nan)
         if scan is not None:
             range_m = range_along_rays(rays, scan, config.scan_window_beams, config.segment_jump_m)
     else:
-        claimed = owners(rays, hands, camera, people, is_background, config.arm_reach_m)
-        range_m = np.full(len(hands), np.nan)
-
-    seated = np.full(len(people), np.nan)
-    if postures is not None:
-        seated = postures.at(people.xy_m, config.same_person_distance_m)
+        owners = memory.ownership.judge(
+            hands, rays, camera, people, background.log_person(people),
+            Tracks.none(stamp_ns) if tracked is None else tracked, stamp_ns, config,
+        )  # fmt: skip
+        claimed, side = owners.cluster, owners.side
+        range_m, range_std_m = owners.range_m, owners.range_std_m
+    seated = memory.postures.at(people.xy_m, config.same_person_distance_m)
     seen = claimed >= 0
     alone = np.flatnonzero(~seen & np.isfinite(rays.bearing_rad))
-    from_hands = _hand_measurements(alone, rays, range_m, hands, pair, motion, config)
+    beside_m = BESIDE_M * side
+    from_hands = _hand_measurements(
+        alone, rays, beside_m, range_m, range_std_m, hands, pair, motion, config
+    )
     if seen.any():
         # The body itself is measured: the ray has only said which of them it is.
         of_bodies = _body_measurements(
@@ -107,9 +123,7 @@ def measure_people(
             ),
         )
         from_hands = Measurements.concatenate(from_hands, of_bodies)
-    callers = claimed[hands.raised & seen]
-    if background is not None:
-        background.free(people.xy_m[callers])
+    background.free(people.xy_m[claimed[hands.raised & seen]])
     if not sustain or not config.scan_sustains or len(people) == 0:
         return from_hands
     # Whom a hand stands for, up or not, is not measured twice: the second would be a twin.
@@ -146,7 +160,9 @@ def scan_people(
 def _hand_measurements(
     rows: IntArray,
     rays: HandRays,
+    beside_m: FloatArray,
     range_m: FloatArray,
+    range_std_m: FloatArray,
     hands: Hands,
     pair: IntArray,
     motion: FloatArray,
@@ -156,6 +172,8 @@ def _hand_measurements(
     supposed_m = np.where(np.isnan(range_m), config.unknown_range_m, range_m)
     offset_m = np.where(hands.is_owned, config.torso_offset_std_m, config.hand_offset_std_m)
     offset_std = np.arctan2(offset_m, np.maximum(supposed_m, 0.3))
+    bearing = rays.bearing_rad + np.arctan2(beside_m, np.maximum(supposed_m, 0.3))
+    std_m = np.where(np.isnan(range_m), config.range_std_m, range_std_m)
     heading = rays.bearing_rad[rows] + rays.origin[2]
     bias = bias_covariance(
         heading,
@@ -166,10 +184,10 @@ def _hand_measurements(
         motion=motion,
     )
     return Measurements.polar(
-        rays.bearing_rad[rows],
+        normalize_angle(bearing)[rows],
         range_m[rows],
         np.hypot(rays.bearing_std_rad, offset_std)[rows],
-        config.range_std_m,
+        std_m[rows],
         rays.origin,
         raised=hands.raised[rows],
         person=pair[rows],
@@ -225,6 +243,12 @@ def _pose_covariance(motion: FloatArray, config: Config) -> FloatArray | None:
     """Shape (3, 3): how wrong stamps move the sensors; the same for both, which go together."""
     moved = config.stamp_std_s * motion
     return np.outer(moved, moved) if moved.any() else None
+
+
+def is_told_by_size(measurements: Measurements) -> BoolArray:
+    """Shape (M,): hands in a picture for whose owner no cluster stands."""
+    is_body = (measurements.person >= 0) & (measurements.person < _PAIR_OFFSET)
+    return np.asarray((measurements.hand >= 0) & ~is_body)
 
 
 def body_bearing_std_rad(range_m: FloatArray, std_m: FloatArray | float) -> FloatArray:

@@ -166,8 +166,8 @@ class PersonTracker:
             camera_looked: False for a step of another sensor between two images: nobody's hand
                 was missed then.
             likeness: Shape (N, M): how much likelier it is that measurement j is of customer i of
-                the last step's `Tracks` than of anybody else, by what you know of both, as the
-                logarithm of a ratio; NaN or 0 where nothing is known.
+                the last step's `Tracks` (or of row i of `people`, everybody) than of anybody else,
+                as the logarithm of a ratio; NaN or 0 where nothing is known.
 
         Returns:
             Every customer, tentative ones included (`confirmed` tells), with the selected one.
@@ -224,6 +224,8 @@ class PersonTracker:
         customers = customers_of(self._now)
         rows = slice(None) if customers is None else customers
         everybody = np.zeros((len(self.positions_m), measured))
+        if np.shape(likeness) == everybody.shape:  # of bystanders as well
+            rows = slice(None)
         shape = everybody[rows].shape
         told = np.nan_to_num(
             np.asarray(likeness, dtype=np.float64), nan=0.0, posinf=np.inf, neginf=-np.inf

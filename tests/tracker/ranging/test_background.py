@@ -28,9 +28,9 @@ def holds(background, *points):
 
 def test_what_stands_still_for_long_is_background(watch):
     background = Background()
-    number = watch(background, [(*CHAIR, 0.07)], 20)
+    number = watch(background, [(*CHAIR, 0.07)], 8)
     assert holds(background, CHAIR) == [False]
-    watch(background, [(*CHAIR, 0.07)], 2, number)
+    watch(background, [(*CHAIR, 0.07)], 14, number)
     assert holds(background, CHAIR, (3.0, 0.0)) == [True, False]
 
 
@@ -60,9 +60,9 @@ def test_what_is_hidden_stays_background(watch):
 
 def test_something_slim_that_stands_alone_and_still_is_background_sooner(watch):
     background, post, trousers = Background(), (1.5, 0.5, 0.03), (1.5, -0.5, 0.07)
-    number = watch(background, [post, trousers], 30, after_s=30.0)
+    number = watch(background, [post, trousers], 20, after_s=30.0)
     assert holds(background, post[:2], trousers[:2]) == [False, False]
-    number = watch(background, [post, trousers], 2, number, after_s=30.0)
+    number = watch(background, [post, trousers], 15, number, after_s=30.0)
     assert holds(background, post[:2], trousers[:2]) == [True, False]
 
 
@@ -70,6 +70,28 @@ def test_two_slim_legs_are_no_background_sooner(watch):
     background = Background()
     watch(background, [(1.5, 0.4, 0.03), (1.5, 0.6, 0.03)], 40, after_s=30.0)
     assert holds(background, (1.54, 0.5)) == [False]
+
+
+def log_person(background, width_m=0.12, legs=1, place=CHAIR):
+    one = np.ones(1)
+    cluster = PersonClusters(np.array([place]), width_m * one, np.array([legs]), 0.0 * one)
+    return float(background.log_person(cluster)[0])
+
+
+def test_what_does_not_move_is_less_and_less_likely_a_person(watch):
+    background = Background()
+    before = log_person(background)
+    number = watch(background, [(*CHAIR, 0.07)], 100, after_s=300.0)
+    after_ten_seconds = log_person(background)
+    watch(background, [(*CHAIR, 0.07)], 200, number, after_s=300.0)
+    assert log_person(background) < after_ten_seconds - 0.1 < before - 0.2
+
+
+def test_a_place_remembers_what_it_looked_like(watch):
+    background = Background()
+    watch(background, [(1.5, 0.4, 0.05), (1.5, 0.6, 0.05)], 20)
+    seen_as_two = log_person(background, legs=1, place=(1.54, 0.5))
+    assert seen_as_two > log_person(Background(), legs=1) + 0.5
 
 
 def test_a_customer_who_stands_still_never_becomes_background(watch):
@@ -97,8 +119,8 @@ def test_a_raised_hand_frees_its_owner_s_place(watch):
 
 def test_time_in_which_no_scan_came_does_not_count(watch):
     background = Background()
-    watch(background, [(*CHAIR, 0.07)], 1)
-    watch(background, [(*CHAIR, 0.07)], 1, 10_000)
+    watch(background, [(*CHAIR, 0.07)], 1, after_s=4.0)
+    watch(background, [(*CHAIR, 0.07)], 1, 10_000, after_s=4.0)
     assert holds(background, CHAIR) == [False]
 
 

@@ -6,7 +6,7 @@ import pytest
 from tracker import Config, Hands
 from tracker.camera import CameraModel
 from tracker.geometry import RigidTransform
-from tracker.ranging import Background, PersonClusters, measure_people
+from tracker.ranging import Background, Memory, PersonClusters, measure_people
 
 CAMERA = CameraModel(460.0, 460.0, 320.0, 240.0)
 AT_ORIGIN = RigidTransform()
@@ -61,8 +61,7 @@ def test_somebody_who_passes_far_in_front_of_a_hand_does_not_own_it(cast, legs):
     found = measure_people(
         hands_toward((4.5, 0.0)), CAMERA, AT_ORIGIN, scan, Config(scan_sustains=False)
     )
-    assert np.isnan(found.values[0, 1])
-    assert found.values[0, 0] == pytest.approx(0.0, abs=1e-9)
+    assert found.values[0] == pytest.approx([0.0, 4.5], abs=1e-6)
 
 
 def test_of_two_people_at_the_ray_the_one_as_near_as_the_hand_is_large(cast, legs):
@@ -105,10 +104,23 @@ def test_of_a_body_at_the_lens_the_bearing_is_as_good_as_unknown(cast, legs):
     assert np.sqrt(found.covariance[0, 0, 0]) == pytest.approx(np.pi / np.sqrt(3.0))
 
 
-def test_without_a_scan_the_hand_is_a_bearing_only():
+def test_without_a_scan_a_hand_is_as_near_as_it_is_large():
     found = measure_people(hands_toward((2.0, 0.5)), CAMERA, AT_ORIGIN, None, Config())
-    assert found.values[0, 0] == pytest.approx(np.arctan2(0.5, 2.0))
+    assert found.values[0] == pytest.approx([np.arctan2(0.5, 2.0), 2.0])
+    assert 0.3 < np.sqrt(found.covariance[0, 1, 1]) < 0.5
+
+
+def test_a_palm_too_short_to_tell_leaves_a_bearing_only():
+    found = measure_people(hands_toward((20.0, 5.0)), CAMERA, AT_ORIGIN, None, Config())
+    assert found.values[0, 0] == pytest.approx(np.arctan2(5.0, 20.0))
     assert np.isnan(found.values[0, 1])
+
+
+@pytest.mark.parametrize("thumb", [-1, 1])
+def test_a_hand_whose_owner_nothing_shows_puts_the_owner_where_the_thumb_points(thumb):
+    hands = hands_toward((2.0, 0.0), thumb=thumb)
+    found = measure_people(hands, CAMERA, AT_ORIGIN, None, Config())
+    assert positions(found)[0, 1] == pytest.approx(-0.3 * thumb, abs=0.02)
 
 
 def test_other_people_in_the_scan_are_measured_as_not_raising(cast, legs):
@@ -151,25 +163,28 @@ def test_the_scan_s_covariance_is_round_whatever_the_range(cast, legs):
     assert np.sqrt(found.covariance[0, 1, 1]) == pytest.approx(0.1)
 
 
-def clusters_at(points):
+def clusters_at(points, legs=2):
     count = len(points)
-    xy_m = np.array(points, float)
-    return PersonClusters(xy_m, np.full(count, 0.3), np.full(count, 2), np.zeros(count))
+    width = np.full(count, 0.3 if legs == 2 else 0.06)
+    return PersonClusters(
+        np.array(points, float), width, np.full(count, legs), np.zeros(count)
+    )  # fmt: skip
 
 
-def still_background(scan, *points):
+def still_background(scan, *points, legs=2):
     """A background that has seen things stand at these points for longer than a minute."""
     background = Background()
     for number in range(700):
         later = replace(scan, stamp_ns=number * 100_000_000)
-        background.observe(later, clusters_at(points), 30.0)
+        background.observe(later, clusters_at(points, legs), 30.0)
     return background
 
 
 def test_what_has_stood_still_for_long_sustains_nobody(cast, legs):
     scan = cast(legs(2.0, 0.2) + legs(2.0, -1.0))
     background = still_background(scan, (2.0, -1.0))
-    found = measure_people(Hands.none(), CAMERA, AT_ORIGIN, scan, Config(), background=background)
+    memory = Memory(background)
+    found = measure_people(Hands.none(), CAMERA, AT_ORIGIN, scan, Config(), memory=memory)
     assert positions(found) == pytest.approx(np.array([[2.0, 0.2]]), abs=0.06)
 
 
@@ -177,18 +192,18 @@ def test_who_has_stood_still_for_long_and_raises_a_hand_is_somebody(cast, legs):
     scan = cast(legs(2.0, 0.3))
     background = still_background(scan, (2.0, 0.3))
     arguments = (CAMERA, AT_ORIGIN, scan, Config())
-    found = measure_people(hands_toward((2.0, 0.0)), *arguments, background=background)
+    found = measure_people(hands_toward((2.0, 0.0)), *arguments, memory=Memory(background))
     assert positions(found) == pytest.approx(np.array([[2.0, 0.3]]), abs=0.06)
-    after = measure_people(Hands.none(), *arguments, background=background)
+    after = measure_people(Hands.none(), *arguments, memory=Memory(background))
     assert positions(after) == pytest.approx(np.array([[2.0, 0.3]]), abs=0.06)
 
 
 def test_a_person_owns_a_hand_rather_than_the_furniture_beside(cast, legs):
     scan = cast([(2.0, -0.3, 0.07), (2.0, 0.45, 0.07)])
-    background = still_background(scan, (2.0, -0.3))
+    background = still_background(scan, (2.0, -0.3), legs=1)
     found = measure_people(
         hands_toward((2.0, 0.0)), CAMERA, AT_ORIGIN, scan, Config(),
-        background=background,
+        memory=Memory(background),
     )  # fmt: skip
     assert positions(found)[0] == pytest.approx([2.0, 0.45], abs=0.08)
 
@@ -205,7 +220,7 @@ def test_a_leg_in_trousers_owns_a_hand_rather_than_a_table_s_leg_that_fits_bette
 def test_somebody_far_behind_does_not_own_a_hand_that_is_near(cast, legs):
     scan = cast(legs(5.5, 0.3))
     found = measure_people(hands_toward((1.5, 0.0)), CAMERA, AT_ORIGIN, scan, Config())
-    assert np.isnan(found.values[0, 1])
+    assert found.values[0] == pytest.approx([0.0, 1.5], abs=1e-6)
 
 
 def test_a_palm_that_tilts_away_is_as_near_as_it_is_broad(cast, legs):
@@ -242,10 +257,10 @@ def test_a_torso_s_bearing_is_surer_than_a_wrist_s():
         for each in (hands, with_torso(hands, (2.0, 0.0)))
     )
     assert torso.values[0, 0] == pytest.approx(0.0, abs=1e-9)
-    # Two parts: the offset at the supposed range, and the noise of the pixel.
+    # Two parts: the offset at the hand's range, and the noise of the pixel.
     length = hands.length_px[0]
     pixel = np.hypot(0.3 + 0.005 * length, 1.0 + 0.02 * length) / 460.0
-    expected = np.hypot(np.arctan2(config.torso_offset_std_m, config.unknown_range_m), pixel)
+    expected = np.hypot(np.arctan2(config.torso_offset_std_m, 2.0), pixel)
     assert np.sqrt(torso.covariance[0, 0, 0]) == pytest.approx(expected, rel=1e-6)
     assert torso.covariance[0, 0, 0] < wrist.covariance[0, 0, 0] / 4
 

@@ -13,7 +13,7 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import Measurements, SensorKind
 from tracker.ranging.bias import bias_covariance
-from tracker.ranging.measuring import body_bearing_std_rad
+from tracker.ranging.measuring import body_bearing_std_rad, is_told_by_size
 
 #: The parameters that ranging states noise by.
 STATED = ("range_std_m", "hand_offset_std_m")
@@ -28,8 +28,8 @@ def restate(
     """The same measurements with the noise that ranging would state under `config`.
 
     As `ranging: person` does: a person in the scan has the same noise in both
-    directions, and a hand without a range stands somewhere beside its body. What lasts is restated
-    too where it is known what was told.
+    directions, and a hand without a range stands somewhere beside its body. What a hand's size
+    has told stays as it is; what lasts is restated too where it is known what was told.
 
     Args:
         measurements: Bearings and ranges; positions are left alone.
@@ -39,6 +39,7 @@ def restate(
     """
     range_m, noise = measurements.values[:, 1], np.array(measurements.covariance)
     ranged = measurements.kind == SensorKind.BEARING_RANGE
+    ranged &= ~is_told_by_size(measurements)
     alone = measurements.kind == SensorKind.BEARING
     noise[ranged] = 0.0
     noise[ranged, 0, 0] = body_bearing_std_rad(range_m[ranged], config.range_std_m) ** 2

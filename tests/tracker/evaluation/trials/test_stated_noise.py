@@ -11,11 +11,11 @@ CAMERA = CameraModel(460.0, 460.0, 320.0, 240.0)
 
 
 def two_hands():
-    """One ahead, where somebody stands, and one to the left, where the scan shows nobody."""
+    """One ahead, where somebody stands, and a tiny one where the scan shows nobody."""
     landmarks = np.full((2, 21, 2), 100.0)
     landmarks[0, :, 0], landmarks[1, :, 0] = 320.0, 60.0
     landmarks[:, 12, 1] -= 60.0
-    landmarks[:, 9, 1] -= 30.0
+    landmarks[0, 9, 1] -= 30.0
     one = np.ones(2)
     return Hands(landmarks, one, one, one.astype(bool), one)
 
@@ -38,6 +38,12 @@ def test_restated_noise_is_what_ranging_states_under_that_configuration():
     found = restate(measured, wanted, told.hand_offset_std_m)
     np.testing.assert_allclose(found.covariance, expected.covariance, rtol=1e-12)
     np.testing.assert_array_equal(found.values, expected.values)
+
+
+def test_what_a_hand_s_size_has_told_keeps_its_noise():
+    measured = measure_people(two_hands()[:1], CAMERA, RigidTransform(), None, Config())
+    found = restate(measured, Config(range_std_m=0.3), None)
+    np.testing.assert_array_equal(found.covariance, measured.covariance)
 
 
 def test_positions_keep_their_noise():

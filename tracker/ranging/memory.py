@@ -1,0 +1,30 @@
+"""What earlier images and scans told: of the room, of whose hands there are, of who sits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tracker.ranging.background import Background
+from tracker.ranging.ownership import Ownership
+from tracker.ranging.postures import Postures
+
+
+@dataclass(slots=True)
+class Memory:
+    """Goes from image to image with what ranging remembers.
+
+    Attributes:
+        background: Which places hold furniture.
+        ownership: Whose hands there are.
+        postures: Who was seen to sit.
+    """
+
+    background: Background = field(default_factory=Background)
+    ownership: Ownership = field(default_factory=Ownership)
+    postures: Postures = field(default_factory=Postures)
+
+    def reset(self) -> None:
+        """Forget everything."""
+        self.background.reset()
+        self.ownership.reset()
+        self.postures.reset()
