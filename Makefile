@@ -19,7 +19,7 @@ REAL_TIME := -m "slow and not soak" -rs
 # Whoever waits longer, in seconds, waits forever: it fails, and shows where.
 PYTEST := $(BIN)/python -m pytest --timeout 300
 
-.PHONY: help demo test soak faults lint docs bench notebooks config setup
+.PHONY: help demo live test soak faults lint docs bench notebooks config setup
 .DEFAULT_GOAL := help
 
 help:  ## this index
@@ -27,6 +27,9 @@ help:  ## this index
 
 demo: $(VENV)/.installed  ## simulate a restaurant, replay it, print who raised a hand and where
 	$(BIN)/raised-hand demo
+
+live: $(VENV)/.installed-live  ## see yourself on a page in the browser; without a camera: make live SOURCE=--simulated
+	$(BIN)/raised-hand live $(SOURCE)
 
 test: $(VENV)/.installed-$(TESTED)  ## run the tests
 	@# Compiled once beforehand, for all the processes that follow.

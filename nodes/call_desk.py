@@ -58,11 +58,12 @@ class CallDesk:
         if self._file is not None:
             self._file.keep(calls)
 
-    def obey(self, command: Command) -> None:
+    def obey(self, command: Command) -> Answer:
         """Follow a command, and say what came of it."""
         answer = self._pipeline.tracker.calls.obey(command)
         self.answer(str(command), answer)
         self.show()
+        return answer
 
     def answer(self, command: str, answer: Answer) -> None:
         """Say what came of a command."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
 
 from nodes.call_desk import CallDesk
 from nodes.diagnostics import WARN, Diagnostics, encode_statuses
@@ -38,6 +39,9 @@ from tracker.pipeline import Pipeline
 from tracker.service import Answer, Command, Verb
 from tracker.transforms import Transforms
 from tracker.waiting import IMAGES_KEPT, WaitingImage
+
+if TYPE_CHECKING:
+    from nodes.page import NodePage
 
 #: Tells a text to the user; levels are "info", "warning" and "error".
 Log = Callable[[str, str], None]
@@ -113,6 +117,7 @@ class NodeCore:
         self._last: FrameResult | None = None
         self._shown_in: str | None = None
         self._calls = CallDesk(self._pipeline, config, publish, lambda text: log("warning", text))
+        self._page = self._make_page(config) if config.dashboard_port else None
         self._worker = threading.Thread(target=self._work, name="hand_detector", daemon=True)
         log("info", _greeting(config))
 
@@ -150,6 +155,8 @@ class NodeCore:
         self._inbox.close()
         if self._worker.is_alive():
             self._worker.join(_STOP_S)
+        if self._page is not None:
+            self._page.close()
 
     def receive(self, item: Input, message: Encoded) -> None:
         """Store what has come on the wire."""
@@ -211,6 +218,8 @@ class NodeCore:
     def configure(self, config: Config) -> None:
         """Change parameters while running; only those that are `live` take effect."""
         self._config = config
+        if self._page is not None:
+            self._page.follow(config)
         self._images.set_rate(config.processing_rate)
         self._inbox.order(lambda: self._pipeline.configure(config))
 
@@ -265,6 +274,8 @@ class NodeCore:
             if was_busy:
                 self._inbox.wake()
             self._mind_silence()
+            if self._page is not None:
+                self._page.follow_orders()
         if self.is_hand_up:
             self._forget_everybody()
 
@@ -306,6 +317,13 @@ class NodeCore:
             except TrackerError as error:
                 self.refuse(item, str(error))
 
+    def _make_page(self, config: Config) -> NodePage:
+        from nodes.page import NodePage  # with the extra `live`
+
+        page = NodePage(config, self._node_name, self._calls, self.configure)
+        self._log("info", f"The page: {page.url}")
+        return page
+
     def _take_command(self, message: Encoded) -> None:
         try:
             text = deserialize(*message).data
@@ -335,6 +353,8 @@ class NodeCore:
         busy_s = (self._steady_ns() - began_ns) / 1e9
         self._busy_s += (busy_s - self._busy_s) / _BUSY_IMAGES
         self._diagnostics.processed(result, latency_s, busy_s)
+        if self._page is not None:
+            self._page.watch(image, result, busy_s)
         self._pace(result)
         publish_views(image, result, self._config, self._publish, self._has_subscribers)
         for note in result.notes:

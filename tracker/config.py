@@ -551,6 +551,15 @@ class Config(BaseModel):
         "(`image_raw/compressed`).",
         group="node",
     )  # fmt: skip
+    dashboard_port: int = _parameter(
+        0, "Port of the node's page for a browser (extra `live`); 0 serves none.",
+        group="node", ge=0, le=65535,
+    )  # fmt: skip
+    dashboard_host: str = _parameter(
+        "127.0.0.1", "Where the page listens: 0.0.0.0 for other computers, which then need the "
+        "token that the log names.",
+        group="node",
+    )  # fmt: skip
     waiting_list_file: str = _parameter(
         "", "File in which a node keeps the waiting list, so that it goes on with it when it is "
         "started again; empty keeps none.",

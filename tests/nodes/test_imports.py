@@ -8,7 +8,7 @@ import pytest
 NODES = Path(__file__).parents[2] / "nodes"
 SHARED = (
     "call_desk", "core", "diagnostics", "fault_log", "header_peek", "image_silence", "inbox",
-    "kept_calls", "link", "outputs", "parameters", "qos", "topics", "work_budget",
+    "kept_calls", "link", "outputs", "page", "parameters", "qos", "topics", "work_budget",
 )  # fmt: skip
 WIRES = {
     "rclpy", "tf2_ros", "cyclonedds", "sensor_msgs", "std_msgs", "std_srvs", "geometry_msgs",

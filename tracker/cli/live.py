@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -89,10 +89,6 @@ def live_command(
             if browser:
                 webbrowser.open(server.url)
         teller = Teller(lambda text: console.print(text, highlight=False))
-        frames = run_live(
-            events,
-            pipeline,
-            watchers=[dashboard.watch, teller.watch],
-            record=record,
-        )
-    console.print(f"{counted(frames, 'image')} seen.")
+        with suppress(KeyboardInterrupt):  # the ordinary end
+            run_live(events, pipeline, watchers=[dashboard.watch, teller.watch], record=record)
+    console.print(f"{counted(teller.frames, 'image')} seen.")

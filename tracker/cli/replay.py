@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
@@ -64,6 +65,10 @@ def replay_command(
     save_view: Annotated[
         Path | None, typer.Option(help="A recording for Rerun's viewer: an .rrd file.")
     ] = None,
+    serve: Annotated[
+        bool, typer.Option("--serve", help="Watch on a page in the browser (extra `live`).")
+    ] = False,
+    port: Annotated[int, typer.Option(help="Of --serve; 0 takes any.", min=0, max=65535)] = 8750,
     as_json: JsonOption = False,
 ) -> None:
     """Run a recording through the tracker, as the robot would have seen it.
@@ -71,6 +76,7 @@ def replay_command(
     Writes output.mcap (for Foxglove, RViz, ros2 bag play), tracks.csv, summary.json, overview.png
     and debug.mp4. A recording that breaks off is replayed as far as it goes, and the status is 1.
     """
+    from tracker.dashboard import Dashboard, DashboardServer
     from tracker.recording import Topics, load_map
     from tracker.replay import Watcher, replay
     from tracker.replay_outputs import replay_files
@@ -110,6 +116,11 @@ def replay_command(
             said = viewer.trouble
             if said:
                 complain(f"--view: {viewer.trouble}")
+        if serve:
+            dashboard = Dashboard(parameters, str(source))
+            server = stack.enter_context(DashboardServer(dashboard, port=port))
+            watchers.append(dashboard.watch)
+            note(f"the page: {server.url}")
         progress = stack.enter_context(bar(errors, "Replaying"))
         result = replay(
             source,
@@ -121,6 +132,8 @@ def replay_command(
             progress=progress,
             watchers=watchers,
         )
+        if serve:
+            _wait_for_interrupt()
     if viewer is not None and viewer.trouble != said:  # while it was watched
         complain(f"--view: {viewer.trouble}")
     files = (*result.files, *([save_view] if save_view is not None else []))
@@ -149,3 +162,12 @@ def replay_command(
     has_trouble = viewer is not None and viewer.trouble
     if result.problems or has_trouble:
         sys.exit(1)
+
+
+def _wait_for_interrupt() -> None:
+    """Keep the page of a replay that has ended, until Ctrl-C."""
+    note("all is replayed; the page stays until Ctrl-C")
+    try:
+        threading.Event().wait()
+    except KeyboardInterrupt:
+        pass

@@ -90,6 +90,10 @@ class Dashboard:
             self._number += 1
         self.follow_orders()
 
+    def follow(self, config: Config) -> None:
+        """Take over parameters that were changed elsewhere."""
+        self._config = config
+
     def follow_orders(self) -> None:
         """Do what the page has asked for, in the thread that processes frames."""
         while self._orders:

@@ -28,8 +28,7 @@ def run_live(
     *,
     watchers: Sequence[Watcher],
     record: Path | None = None,
-    is_over: Callable[[], bool] = lambda: False,
-) -> int:
+) -> None:
     """Process what comes until it ends.
 
     Args:
@@ -38,15 +37,10 @@ def run_live(
         watchers: Told of each processed image.
         record: An MCAP that `replay` reads: scans, transforms, intrinsics, and the images that
             were processed.
-        is_over: Asked after each event.
-
-    Returns:
-        How many images were processed.
 
     Raises:
         RecordingError: The recording cannot be written.
     """
-    frames = 0
     with ExitStack() as held:
         writer = None
         if record is not None:
@@ -62,13 +56,9 @@ def run_live(
             began_s = time.perf_counter()
             for image, result in pipeline.advance(log_ns):
                 busy_s = time.perf_counter() - began_s
-                frames += 1
                 for watch in watchers:
                     watch(image, result, busy_s)
                 began_s = time.perf_counter()
-            if is_over():
-                break
-    return frames
 
 
 def _record(writer: RecordingWriter, log_ns: int, event: Event) -> None:

@@ -12,14 +12,19 @@ class Teller:
 
     Args:
         say: Takes each line.
+
+    Attributes:
+        frames: How many images were processed.
     """
 
     def __init__(self, say: Callable[[str], None]) -> None:
         self._say = say
+        self.frames = 0
         self._before: dict[int, tuple[bool, CallState]] = {}
 
     def watch(self, image: CameraImage, result: FrameResult, busy_s: float) -> None:
         """Take in one frame."""
+        self.frames += 1
         now = {caller.id: (caller.is_up, caller.state) for caller in result.waiting_list.callers}
         for caller in result.waiting_list.callers:
             was_up, state = self._before.get(caller.id, (False, CallState.WAITING))

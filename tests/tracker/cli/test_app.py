@@ -26,6 +26,7 @@ def complaint(error):
     [
         (),
         ("demo",),
+        ("live",),
         ("replay",),
         ("simulate",),
         ("monte-carlo",),
