@@ -2,7 +2,7 @@
 
 Log-odds per unit of a quantity of `evidence`, by logistic regression around what is known
 beforehand. The data: 370 photos of 24 people who call or do not (custom-gesture-dataset, MediaPipe
-and others, 14 looks each), 15 clips of signing, waving and ordinary life, 104 drawn scenes of
+and others, 14 looks each), 15 clips of signing, waving and ordinary life, 128 drawn scenes of
 callers at 1 to 5 m and of people who do something else (seed 901).
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from tracker.containers import FloatArray, IntArray, Refusal
 
 #: The log-odds of a hand of which every quantity is 0.
-BIAS = -3.27
+BIAS = -3.51
 
 
 class Weight(NamedTuple):
@@ -37,28 +37,28 @@ class Weight(NamedTuple):
 
 
 WEIGHTS = {
-    "found": Weight(0.92, 0.0),
-    "score": Weight(0.51, 1.0, 10.0, Refusal.UNSURE),
-    "rise": Weight(1.31, 2.0, 10.0),
-    "lean": Weight(-1.24, -1.0, reason=Refusal.LEANS),
-    "spread": Weight(0.21, 0.4, 5.0),
-    "thumb": Weight(-3.00, -2.0),
-    "owned": Weight(0.23, 0.0),
-    "unowned": Weight(-0.17, -1.0, reason=Refusal.OWNER_UNKNOWN),
-    "alone": Weight(1.82, 2.0),
-    "low": Weight(-4.33, -3.0, reason=Refusal.BELOW_SHOULDERS),
-    "palm_low": Weight(-2.16, -2.0, 5.0, Refusal.BELOW_SHOULDERS),
-    "high": Weight(3.81, 3.0),
-    "fist_low": Weight(-1.24, -2.0, reason=Refusal.BELOW_SHOULDERS),
-    "overhead": Weight(1.44, 2.0),
-    "forearm": Weight(3.95, 2.0, reason=Refusal.ARM_DOWN),
-    "head": Weight(-5.72, -3.0, reason=Refusal.AT_HEAD),
-    "inside": Weight(-2.23, -2.0, reason=Refusal.BEFORE_BODY),
-    "together": Weight(-2.02, -2.0, 10.0, Refusal.BEFORE_BODY),
-    "doubt": Weight(-1.15, -0.5, reason=Refusal.OWNER_UNKNOWN),
-    "faint": Weight(-4.68, -4.0, reason=Refusal.OWNER_UNKNOWN),
-    "apart": Weight(-1.03, -1.0, 10.0, Refusal.OWNER_UNKNOWN),
-    "swing": Weight(3.01, 3.0, 10.0),
+    "found": Weight(1.03, 0.0),
+    "score": Weight(0.52, 1.0, 10.0, Refusal.UNSURE),
+    "rise": Weight(1.38, 2.0, 10.0),
+    "lean": Weight(-1.25, -1.0, reason=Refusal.LEANS),
+    "spread": Weight(0.16, 0.4, 5.0),
+    "thumb": Weight(-3.30, -2.0),
+    "owned": Weight(0.20, 0.0),
+    "unowned": Weight(-0.15, -1.0, reason=Refusal.OWNER_UNKNOWN),
+    "alone": Weight(1.72, 2.0),
+    "low": Weight(-4.41, -3.0, reason=Refusal.BELOW_SHOULDERS),
+    "palm_low": Weight(-2.21, -2.0, 5.0, Refusal.BELOW_SHOULDERS),
+    "high": Weight(3.88, 3.0),
+    "fist_low": Weight(-1.64, -2.0, reason=Refusal.BELOW_SHOULDERS),
+    "overhead": Weight(1.52, 2.0),
+    "forearm": Weight(3.76, 2.0, reason=Refusal.ARM_DOWN),
+    "head": Weight(-5.25, -3.0, reason=Refusal.AT_HEAD),
+    "inside": Weight(-2.08, -2.0, reason=Refusal.BEFORE_BODY),
+    "together": Weight(-2.01, -2.0, 10.0, Refusal.BEFORE_BODY),
+    "doubt": Weight(-1.09, -0.5, reason=Refusal.OWNER_UNKNOWN),
+    "faint": Weight(-4.69, -4.0, reason=Refusal.OWNER_UNKNOWN),
+    "apart": Weight(-1.04, -1.0, 10.0, Refusal.OWNER_UNKNOWN),
+    "swing": Weight(3.00, 3.0, 10.0),
 }
 #: The names of the quantities, in the order of the columns.
 NAMES = tuple(WEIGHTS)
