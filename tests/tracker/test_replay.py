@@ -131,7 +131,9 @@ def test_camera_info_of_the_recording_is_used(tmp_path, write_bag, hand_ahead):
     result = replay(tmp_path / "info.mcap", tmp_path / "out", detector=hand_ahead)
     rows = read_table(tmp_path / "out/tracks.csv")
     bearing = np.arctan2(float(rows[-1]["y_m"]), float(rows[-1]["x_m"]))
-    assert bearing == pytest.approx(-np.arctan(220 / 460), abs=0.02)
+    # A palm of 30 px is 1.46 m away, and its thumb points at an owner .3 m to the left.
+    beside_rad = np.arctan2(0.3, 460 * 0.095 / 30)
+    assert bearing == pytest.approx(beside_rad - np.arctan(220 / 460), abs=0.02)
     assert result.history.frames_processed == 20
 
 

@@ -110,7 +110,8 @@ def test_a_track_on_the_bodys_bearing_is_the_callers(scene, hand_px, beside_m, f
     camera, place = scene.camera, scene.people[0].path[0]
     hand_side = np.sign(hand_px[0, 0] - camera.cx + camera.fx * place.y_m / place.x_m)
     body_px = camera.cx - camera.fx * place.y_m / place.x_m
-    column = body_px + hand_side * camera.fx * beside_m / place.x_m
+    # The thumb points at a body .3 m beside the hand.
+    column = body_px + hand_side * camera.fx * (0.3 + beside_m) / place.x_m
     moved = hand_px + np.array([column - hand_px[0, 0], 0.0])
     score = score_caller(scene, Scripted(moved, UP), CONFIG, np.random.default_rng(2))
     assert (score.frames is not None) is found
