@@ -21,7 +21,7 @@ import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
-from tracker.containers import FloatArray, Hands, IntArray, Measurements, Tracks
+from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measurements, Tracks
 from tracker.ranging.followed_hands import FollowedHands, HandMeans
 from tracker.ranging.people import PersonClusters
 from tracker.ranging.person_range import (
@@ -43,7 +43,7 @@ UNSEEN_PER_M2 = 0.03
 SHOWN_M = 0.4
 #: The tracker is told so in log-odds: it would ask one image what all have answered.
 SURE = 20.0
-#: A bystander this young may be anything; only its cluster speaks for it (guess).
+#: A track this young may be anything; only its cluster speaks for it (guess).
 _TRACKED_AFTER_S = 1.0
 
 
@@ -54,6 +54,7 @@ class Owners:
     Attributes:
         cluster: Shape (H,): row of the owner's cluster; -1 where no cluster shows the owner.
         person: Shape (H,): row of the owner among the people tracked; -1 where nobody known is.
+        is_guess: Shape (N,): of the people tracked, those whom hands alone have shown so far.
         side: Shape (H,): `owner_side`, over all images.
         range_m: Shape (H,): told by the palm, over all images; NaN where it is too short to tell.
         range_std_m: Shape (H,).
@@ -61,6 +62,7 @@ class Owners:
 
     cluster: IntArray
     person: IntArray
+    is_guess: BoolArray
     side: FloatArray
     range_m: FloatArray
     range_std_m: FloatArray
@@ -72,10 +74,12 @@ class Ownership:
     def __init__(self) -> None:
         self._hands = FollowedHands()
         self._owners: Owners | None = None
+        self._shown_ids = np.zeros(0, dtype=np.int64)
 
     def reset(self) -> None:
         """Forget all hands."""
         self._hands.reset()
+        self._owners, self._shown_ids = None, np.zeros(0, dtype=np.int64)
 
     def judge(
         self,
@@ -114,7 +118,7 @@ class Ownership:
             stamp_ns,
         )
         range_m, spread = _ranges(means, camera)
-        hidden = _hidden(tracked, people, stamp_ns)
+        hidden, is_guess = self._hidden(tracked, people, stamp_ns)
         xy_m = np.concatenate([people.xy_m, hidden.xy_m])
         unsure_m2 = np.concatenate([np.zeros((len(people), 2, 2)), hidden.covariance_m2])
         log_there = np.concatenate([log_person, hidden.log_existence])
@@ -147,11 +151,28 @@ class Ownership:
         self._owners = Owners(
             cluster=np.where(is_cluster, best, -1),
             person=person,
+            is_guess=is_guess,
             side=means.side,
             range_m=range_m,
             range_std_m=range_m * spread,
         )
         return self._owners
+
+    def _hidden(
+        self, tracked: Tracks, people: PersonClusters, stamp_ns: int
+    ) -> tuple[_Hidden, BoolArray]:
+        """Whom the scan does not show now but has shown; and who has only been guessed by hands.
+
+        A guess is the very person not seen, and no rival to whom the scan shows.
+        """
+        xy_m = tracked.mean[:, :2] + tracked.mean[:, 2:] * (stamp_ns - tracked.stamp_ns) / 1e9
+        apart_m = np.linalg.norm(xy_m[:, None] - people.xy_m, axis=-1)
+        is_shown = apart_m.min(axis=1, initial=np.inf) <= SHOWN_M
+        has_been = is_shown | np.isin(tracked.id, self._shown_ids)
+        self._shown_ids = tracked.id[has_been]
+        row = np.flatnonzero(has_been & ~is_shown & (tracked.age_s > _TRACKED_AFTER_S))
+        covariance_m2, existence = tracked.covariance[row, :2, :2], tracked.existence[row]
+        return _Hidden(row, xy_m[row], covariance_m2, np.log(existence)), ~has_been
 
     def likeness(self, measurements: Measurements, people: int) -> FloatArray:
         """What was judged, for the tracker's log-odds.
@@ -171,7 +192,7 @@ class Ownership:
         column = np.flatnonzero(measurements.hand >= 0)
         hand = measurements.hand[column]
         column, hand = (rows[self._owners.cluster[hand] < 0] for rows in (column, hand))
-        likeness[:, column] = -SURE
+        likeness[np.ix_(~self._owners.is_guess, column)] = -SURE
         is_known = self._owners.person[hand] >= 0
         likeness[self._owners.person[hand[is_known]], column[is_known]] = SURE
         return likeness
@@ -185,15 +206,6 @@ class _Hidden:
     xy_m: FloatArray  # (K, 2): where they are expected now
     covariance_m2: FloatArray  # (K, 2, 2), of that
     log_existence: FloatArray  # (K,)
-
-
-def _hidden(tracked: Tracks, people: PersonClusters, stamp_ns: int) -> _Hidden:
-    xy_m = tracked.mean[:, :2] + tracked.mean[:, 2:] * (stamp_ns - tracked.stamp_ns) / 1e9
-    apart_m = np.linalg.norm(xy_m[:, None] - people.xy_m, axis=-1)
-    is_hidden = apart_m.min(axis=1, initial=np.inf) > SHOWN_M
-    is_known = tracked.customer | (tracked.age_s > _TRACKED_AFTER_S)
-    row = np.flatnonzero(is_hidden & is_known)
-    return _Hidden(row, xy_m[row], tracked.covariance[row, :2, :2], np.log(tracked.existence[row]))
 
 
 def _ranges(means: HandMeans, camera: CameraModel) -> tuple[FloatArray, FloatArray]:

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -63,8 +61,9 @@ def judge(ownership, hands, people, log_person=None, tracked=None, number=0):
 
 def test_a_hidden_owner_keeps_the_hand_though_somebody_else_stands_in_front():
     hands, in_front = hand_at(5.0, 0.0), clusters_at((2.5, 0.0))
-    tracked = known_at((2.5, 0.0), (5.0, 0.1))
-    owners = judge(Ownership(), hands, in_front, tracked=tracked)
+    tracked, ownership = known_at((2.5, 0.0), (5.0, 0.1)), Ownership()
+    judge(ownership, hands, clusters_at((2.5, 0.0), (5.0, 0.1)), tracked=tracked)
+    owners = judge(ownership, hands, in_front, tracked=tracked)
     assert (owners.cluster[0], owners.person[0]) == (-1, 1)
 
 
@@ -104,6 +103,7 @@ def test_a_hand_that_comes_back_after_long_is_another_one():
 def test_the_tracker_is_told_of_hidden_owners_alone():
     ownership = Ownership()
     hands, tracked = hand_at(5.0, 0.0), known_at((2.5, 0.0), (5.0, 0.1))
+    judge(ownership, hands, clusters_at((2.5, 0.0), (5.0, 0.1)), tracked=tracked)
     judge(ownership, hands, clusters_at((2.5, 0.0)), tracked=tracked)
     measured = Measurements.polar([0.0, 0.3], [5.0, 2.0], 0.05, 0.5, hand=[0, -1])
     likeness = ownership.likeness(measured, 2)
@@ -111,8 +111,15 @@ def test_the_tracker_is_told_of_hidden_owners_alone():
     assert likeness[:, 1].tolist() == [0.0, 0.0]
 
 
-def test_a_caller_who_has_just_appeared_and_no_scan_shows_keeps_the_hand():
-    just_now = known_at((5.0, 0.0))
-    just_now = replace(just_now, age_s=np.zeros(1))
-    owners = judge(Ownership(), hand_at(5.0, 0.0), clusters_at(), tracked=just_now)
-    assert owners.person.tolist() == [0]
+def test_who_was_only_guessed_from_a_hand_is_no_rival_to_whom_the_scan_shows():
+    ownership = Ownership()
+    hands, tracked = hand_at(4.0, 0.0), known_at((4.0, 0.0))
+    owners = judge(ownership, hands, clusters_at((4.6, 0.1)), tracked=tracked)
+    assert owners.cluster.tolist() == [0]
+
+
+def test_a_guess_keeps_its_hand_while_no_scan_shows_anybody():
+    ownership = Ownership()
+    judge(ownership, hand_at(4.0, 0.0), clusters_at(), tracked=known_at((4.0, 0.0)))
+    measured = Measurements.polar([0.0], [4.0], 0.05, 0.5, hand=[0])
+    assert ownership.likeness(measured, 1).tolist() == [[0.0]]
