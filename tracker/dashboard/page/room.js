@@ -94,7 +94,7 @@ class Room {
     pen.arc(left, top, 6, 0, 2 * Math.PI);
     pen.fill();
     const known = callers.find((one) => one.track === person.id);
-    this.label(pen, left, top, `#${known ? known.id : person.id}${person.up ? " hand up" : ""}`, shade);
+    this.label(pen, left, top, `#${known ? known.id : person.id}${person.up ? " up" : ""}`, shade);
   }
 
   lost(pen, at, caller) {
