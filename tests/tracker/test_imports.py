@@ -21,6 +21,7 @@ FLOORS = [
     {"camera", "transforms", "compiling", "selection"},
     {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
     {"problems", "picture_camera", "locating"},
+    {"depth_sense"},
     {"pipeline", "recording"},
     {"simulation"},
     {"evaluation.metrics"},

@@ -11,6 +11,7 @@ from tracker.containers.arrays import (
     IntArray,
     check_stamp,
 )
+from tracker.containers.depth_image import DepthArray, DepthImage, depth_in_meters
 from tracker.containers.hands import Hands, Refusal
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
@@ -23,6 +24,8 @@ from tracker.containers.view import View
 __all__ = [
     "BoolArray",
     "CameraImage",
+    "DepthArray",
+    "DepthImage",
     "FloatArray",
     "FrameResult",
     "Hands",
@@ -39,4 +42,5 @@ __all__ = [
     "Truth",
     "View",
     "check_stamp",
+    "depth_in_meters",
 ]

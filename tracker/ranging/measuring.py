@@ -9,6 +9,7 @@ from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray, LocatedScan, Measurements
 from tracker.geometry import RigidTransform, normalize_angle
 from tracker.ranging.background import Background
+from tracker.ranging.depth import HandDepths
 from tracker.ranging.hand_pairs import pair_hands
 from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.person_range import owners
@@ -32,6 +33,7 @@ def measure_people(
     sustain: bool = True,
     background: Background | None = None,
     people: PersonClusters | None = None,
+    depths: HandDepths | None = None,
 ) -> Measurements:
     """Turn one image's hands and the scan beside it into measurements in the fixed frame.
 
@@ -47,6 +49,8 @@ def measure_people(
         background: What has been learnt of the room so far, and learns from this scan; None takes
             whatever is person-sized for a person.
         people: From `scan_people`, where that has been asked already.
+        depths: What a depth camera says of hands' owners; it shows whose hand it is as well, so
+            that the scan is not asked for those it knows.
 
     Returns:
         First one row for each hand whose direction is known, then the clusters that no hand has
@@ -71,9 +75,14 @@ def measure_people(
         claimed = owners(rays, hands, camera, people, is_background, config.arm_reach_m)
         range_m = np.full(len(hands), np.nan)
 
+    range_std_m = np.full(len(hands), config.range_std_m)
+    if depths is not None:
+        range_m = np.where(depths.is_known, depths.range_m, range_m)
+        range_std_m = np.where(depths.is_known, depths.std_m, range_std_m)
+        claimed = np.where(depths.is_known, -1, claimed)
     seen = claimed >= 0
     alone = np.flatnonzero(~seen & np.isfinite(rays.bearing_rad))
-    from_hands = _hand_measurements(alone, rays, range_m, hands, pair, config)
+    from_hands = _hand_measurements(alone, rays, range_m, range_std_m, hands, pair, config)
     if seen.any():
         # The body itself is measured: the ray has only said which of them it is.
         of_bodies = _body_measurements(
@@ -115,6 +124,7 @@ def _hand_measurements(
     rows: IntArray,
     rays: HandRays,
     range_m: FloatArray,
+    range_std_m: FloatArray,
     hands: Hands,
     pair: IntArray,
     config: Config,
@@ -127,7 +137,7 @@ def _hand_measurements(
         rays.bearing_rad[rows],
         range_m[rows],
         np.hypot(rays.bearing_std_rad, offset_std)[rows],
-        config.range_std_m,
+        range_std_m[rows],
         rays.origin,
         raised=hands.raised[rows],
         person=pair[rows],

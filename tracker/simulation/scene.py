@@ -181,6 +181,28 @@ class Laser(_Part):
     dropout: float = Field(0.01, ge=0.0, lt=1.0, description="Share of beams without a return.")
 
 
+class Depth(_Part):
+    """A depth camera, of stereo kind, beside the color camera.
+
+    Registered pictures show what the color camera shows, pixel by pixel, in its frame. Others have
+    intrinsics, a place and a frame (`camera_depth_optical_frame`) of their own.
+    """
+
+    registered: bool = True
+    unit: Literal["mm", "m"] = Field("mm", description="16UC1 in mm, or 32FC1 in m.")
+    y_m: float = Field(0.059, description="To the left of the color camera, if not registered.")
+    width: int = Field(848, ge=16, le=4096)
+    height: int = Field(480, ge=16, le=4096)
+    f_px: float = Field(424.0, gt=0.0, description="Focal length; registered: the color camera's.")
+    rate_hz: float = Field(15.0, gt=0.0, le=240.0)
+    range_min_m: float = Field(0.3, ge=0.0)
+    range_max_m: float = Field(10.0, gt=0.0)
+    baseline_m: float = Field(0.05, gt=0.0)
+    disparity_std_px: float = Field(0.08, ge=0.0, description="Its noise.")
+    disparity_step_px: float = Field(0.0625, gt=0.0, description="No finer is it told.")
+    holes: float = Field(0.03, ge=0.0, lt=1.0, description="Share without a reading.")
+
+
 class Wall(_Part):
     """A run of straight walls through corners."""
 
@@ -219,6 +241,7 @@ class Scene(_Part):
     robot: Robot = Field(default_factory=Robot)
     camera: Camera = Field(default_factory=Camera)
     laser: Laser = Field(default_factory=Laser)
+    depth: Depth | None = None
     floor: Color = "#9c8b78"
     backlight: float = Field(1.0, gt=0.0, le=16.0, description="Brightness of what is behind.")
     walls: Annotated[tuple[Wall, ...], Field(strict=False)] = ()
@@ -320,7 +343,19 @@ def _reason(item: Any) -> str:
 
 
 def _suggestion(name: str) -> str:
-    parts = (Scene, Robot, Camera, Laser, Wall, Table, Person, PersonLook, DrivePoint, WayPoint)
+    parts = (
+        Scene,
+        Robot,
+        Camera,
+        Laser,
+        Depth,
+        Wall,
+        Table,
+        Person,
+        PersonLook,
+        DrivePoint,
+        WayPoint,
+    )
     known = {key for part in (*parts, Raise, Activity) for key in part.model_fields}
     close = get_close_matches(name, known, n=1)
     return f"; did you mean `{close[0]}`?" if close else ""
