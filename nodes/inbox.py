@@ -35,6 +35,8 @@ _KEPT = {
     Input.TRANSFORMS: 2000,
     Input.CAMERA_INFO: 40,
     Input.SCAN: 40,
+    Input.DEPTH_CAMERA_INFO: 20,
+    Input.DEPTH: 20,
 }
 
 

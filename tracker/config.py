@@ -275,7 +275,7 @@ class Config(BaseModel):
         group="ranging", live=True,
     )  # fmt: skip
     depth_std_m: float = _parameter(
-        0.01, "Range noise of the depth camera at 1 m; it grows with the square of the range.",
+        0.005, "Range noise of the depth camera at 1 m; it grows with the square of the range.",
         unit="m", group="ranging", live=True, ge=0.0, le=1.0,
     )  # fmt: skip
     depth_height_min_m: float = _parameter(

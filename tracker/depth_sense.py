@@ -20,6 +20,7 @@ from tracker.ranging.depth import (
     body_measurements,
     find_bodies,
     hand_depths,
+    without_seen,
 )
 from tracker.waiting import WaitingRoom
 
@@ -105,17 +106,21 @@ class DepthSense:
         rays = hand_rays(hands, camera, fixed_from_camera, config)
         return hand_depths(hands, rays, sight.points, camera, fixed_from_camera, config)
 
-    def claims(
+    def complete(
         self,
+        claims: Measurements,
         sight: DepthSight,
         hands: Hands,
         depths: HandDepths,
         stamp_ns: int,
         config: Config,
     ) -> Measurements:
-        """What the bodies say for which no hand speaks; a depth image says it only once.
+        """The claims of hands and scan, and those of the bodies for which no hand speaks.
+
+        Several images may use one depth image; its bodies speak only once.
 
         Args:
+            claims: Of hands and of the scan.
             sight: What the depth image shows.
             hands: Of the image it is used for.
             depths: From `ask`, of these hands.
@@ -123,15 +128,20 @@ class DepthSense:
             config: The ranging group.
         """
         people, seen_ns = sight.bodies.people, sight.points.stamp_ns
+        claims = without_seen(
+            claims, np.concatenate([people.xy_m, depths.xy_m[depths.is_known]]), config
+        )
         if seen_ns <= self._sustained_ns or not config.scan_sustains:
-            return Measurements.none()
+            return claims
         self._sustained_ns = seen_ns
         is_free = ~depths.claims(people.xy_m)
         if config.background_after_s > 0.0:
             self._background.observe(sight.bodies.slice, people, config.background_after_s)
             is_free &= ~self._background.holds(people.xy_m)
             self._background.free(people.xy_m[depths.claims(people.xy_m, hands.raised)])
-        return body_measurements(sight.bodies, is_free, (stamp_ns - seen_ns) / 1e9, config)
+        off_s = (stamp_ns - seen_ns) / 1e9
+        of_bodies = body_measurements(sight.bodies, is_free, off_s, config)
+        return Measurements.concatenate(claims, of_bodies)
 
     def spare(self, customers_xy_m: FloatArray, distance_m: float) -> None:
         """A customer who stands still does not become background."""

@@ -20,7 +20,6 @@ from tracker.containers import (
     DepthImage,
     FrameResult,
     LocatedScan,
-    Measurements,
     Scan,
 )
 from tracker.depth_sense import DepthSense, DepthSight
@@ -241,8 +240,9 @@ class Pipeline:
         if scan is not None:
             self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
         if sight is not None and depths is not None:
-            of_bodies = self._depth.claims(sight, hands, depths, image.stamp_ns, self.config)
-            measurements = Measurements.concatenate(measurements, of_bodies)
+            measurements = self._depth.complete(
+                measurements, sight, hands, depths, image.stamp_ns, self.config
+            )
             self._background.free(people.xy_m[depths.claims(people.xy_m, hands.raised)])
         robot_xy_m = fixed_from_camera.planar[:2]
         tracks = self.tracker.step(

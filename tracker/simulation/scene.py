@@ -295,6 +295,11 @@ def scene_from_mapping(document: Any, origin: str = "scene") -> Scene:
         raise SceneError(f"{origin}: {reasons}.") from error
 
 
+def with_depth_camera(scene: Scene) -> Scene:
+    """The same scene with a depth camera, registered to the color camera unless it has its own."""
+    return scene if scene.depth is not None else scene.model_copy(update={"depth": Depth()})
+
+
 def scene_names() -> list[str]:
     """The scenes that come with the project."""
     return sorted({path.stem for folder in _folders() for path in folder.glob("*.yaml")})

@@ -1,7 +1,9 @@
 """How far is the person whose hand is up? By what the depth image shows of the body.
 
 Where a pose has told the torso, its chest; elsewhere the arm below the wrist. Both windows show
-what stands behind the person too: the nearest range at which many readings lie counts.
+what stands behind the person too, and who walks past in front: of the ranges at which many
+readings lie, the nearest counts that the hand itself does not speak against. The hand is seen, so
+nothing is before it; where it has no reading of its own, its size tells about how far it is.
 """
 
 from __future__ import annotations
@@ -16,20 +18,28 @@ from tracker.containers import BoolArray, FloatArray, Hands
 from tracker.geometry import RigidTransform
 from tracker.ranging.depth.noise import depth_noise_m
 from tracker.ranging.depth.points import DepthPoints
+from tracker.ranging.depth.same_body import are_near
+from tracker.ranging.person_range import size_misfit
 from tracker.ranging.rays import HandRays
 
 #: Windows of the picture, in hand lengths: half their width, and how far they reach up and down
 #: from the torso's middle or the wrist. A hand is some .18 m long, a trunk .3 m wide (guesses).
 _TORSO_WINDOW = (0.6, 1.2, 0.4)
 _ARM_WINDOW = (0.5, 0.0, 1.6)
+#: The same of the palm, from its middle.
+_PALM_WINDOW = (0.3, 0.3, 0.3)
 #: A fist, or a hand seen from its side, looks shorter; windows are made for no less than this.
 _LENGTH_MIN_PX = 8.0
 #: A body's readings lie within this, and at least so many of the window's do (guesses).
 _DEEP_M, _SHARE_MIN, _READINGS_MIN = 0.3, 0.25, 4
 #: From the skin of chest or arm to the middle of the body, and how that varies (guesses).
 _CHEST_M, _ARM_M, _BODY_STD_M = 0.11, 0.0, 0.06
-#: A caller's body, which speaks for itself by its hand, is no farther from there (guess).
-_SAME_BODY_M = 0.45
+#: A hand is held no farther than this before its owner's chest, and as little behind it; both
+#: widen with the noise of the readings (guesses).
+_BEFORE_M, _BEHIND_M, _NOISES = 0.6, 0.25, 2.0
+#: A farther range counts where the hand's size fits it so much better: two standard deviations.
+_MISFIT_MAX = 4.0
+_WRIST, _MIDDLE_ROOT = 0, 9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,9 +72,7 @@ class HandDepths:
         Returns:
             Shape (C,).
         """
-        known = self.xy_m[self.is_known & counts]
-        apart = np.linalg.norm(bodies_xy_m[:, None] - known, axis=-1)
-        return np.asarray((apart < _SAME_BODY_M).any(axis=1))
+        return are_near(bodies_xy_m, self.xy_m[self.is_known & counts])
 
 
 def hand_depths(
@@ -96,8 +104,17 @@ def hand_depths(
         pixels = camera.pixels(offset_m @ fixed_from_camera.matrix)
         level_m = np.hypot(offset_m[:, 0], offset_m[:, 1])
         for row in range(count):
-            inside = _window(hands, row, pixels, rays.roll_rad)
-            range_m[row] = _nearer_mode(level_m[inside])
+            modes_m = _modes(level_m[_body_window(hands, row, pixels, rays.roll_rad)])
+            palm_m = _modes(level_m[_palm_window(hands, row, pixels, rays.roll_rad)])
+            if len(palm_m) and len(modes_m):
+                noise_m = _NOISES * depth_noise_m(palm_m[0], config)
+                before_m = modes_m - palm_m[0]
+                fits = (before_m > -_BEHIND_M - noise_m) & (before_m < _BEFORE_M + noise_m)
+            else:
+                misfit = size_misfit(hands[row], camera, modes_m[None])[0]
+                fits = misfit <= np.min(misfit, initial=np.inf) + _MISFIT_MAX
+            if fits.any():
+                range_m[row] = modes_m[fits][0]
         range_m += np.where(hands.is_owned, _CHEST_M, _ARM_M)
     heading = rays.origin[2] + rays.bearing_rad
     direction = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
@@ -108,13 +125,26 @@ def hand_depths(
     )
 
 
-def _window(hands: Hands, row: int, pixels: FloatArray, roll_rad: float) -> BoolArray:
+def _body_window(hands: Hands, row: int, pixels: FloatArray, roll_rad: float) -> BoolArray:
     """Which pixels, shape (N, 2), lie where a hand's owner is; shape (N,)."""
     is_owned = bool(hands.is_owned[row])
     middle = hands.torso_px[row] if is_owned else hands.wrist_px[row]
-    half, up, down = _TORSO_WINDOW if is_owned else _ARM_WINDOW
     length = max(float(hands.length_px[row]), _LENGTH_MIN_PX)
-    right_px, down_px = (pixels - middle).T
+    return _inside(pixels - middle, _TORSO_WINDOW if is_owned else _ARM_WINDOW, length, roll_rad)
+
+
+def _palm_window(hands: Hands, row: int, pixels: FloatArray, roll_rad: float) -> BoolArray:
+    """Which pixels, shape (N, 2), lie on a hand; shape (N,)."""
+    middle = hands.landmarks_px[row, [_WRIST, _MIDDLE_ROOT]].mean(axis=0)
+    length = max(float(hands.length_px[row]), _LENGTH_MIN_PX)
+    return _inside(pixels - middle, _PALM_WINDOW, length, roll_rad)
+
+
+def _inside(
+    off_px: FloatArray, window: tuple[float, float, float], length: float, roll_rad: float
+) -> BoolArray:
+    half, up, down = window
+    right_px, down_px = off_px.T
     if roll_rad:  # what is level in the room is turned so far in the picture, counter-clockwise
         cos, sin = np.cos(roll_rad), np.sin(roll_rad)
         right_px, down_px = right_px * cos - down_px * sin, right_px * sin + down_px * cos
@@ -123,17 +153,21 @@ def _window(hands: Hands, row: int, pixels: FloatArray, roll_rad: float) -> Bool
         return np.asarray(inside & (down_px <= down * length))
 
 
-def _nearer_mode(range_m: FloatArray) -> float:
-    """Middle of the nearest readings that are many; NaN where none are."""
+def _modes(range_m: FloatArray) -> FloatArray:
+    """Ranges at which many readings lie, the nearest first; empty for none."""
     ordered = np.sort(range_m)
-    needed = max(_READINGS_MIN, int(np.ceil(_SHARE_MIN * len(ordered))))
+    count = len(ordered)
+    needed = max(_READINGS_MIN, int(np.ceil(_SHARE_MIN * count)))
     ends = np.searchsorted(ordered, ordered + _DEEP_M, side="right")
-    many = np.flatnonzero(ends - np.arange(len(ordered)) >= needed)
-    if not len(many):
-        return np.nan
-    # Of the windows that begin with the first such reading, the fullest: a few stray readings in
-    # front of the body belong to none.
-    first = many[0]
-    begins = np.arange(first, ends[first])
-    best = begins[np.argmax(ends[begins] - begins)]
-    return float(np.median(ordered[best : ends[best]]))
+    held = ends - np.arange(count)
+    modes, row = [], 0
+    while row < count:
+        if held[row] < needed:
+            row += 1
+            continue
+        # Of the windows that begin with these readings, the fullest: stray readings in front of a
+        # body begin none.
+        best = row + int(np.argmax(held[row : ends[row]]))
+        modes.append(np.median(ordered[best : ends[best]]))
+        row = int(ends[best])
+    return np.array(modes)
