@@ -117,14 +117,14 @@ class DepthView:
         height, width = ahead_m.shape
         near_m, far_m = cv2.erode(ahead_m, np.ones((3, 3))), cv2.dilate(ahead_m, np.ones((3, 3)))
         rows, columns = np.nonzero(far_m - near_m > _EDGE_M)
-        told_m = ahead_m.copy()
+        told_m: _Depths = ahead_m.copy()
         chance, share = rng.random((2, len(rows)), dtype=np.float32)
         near_m = near_m[rows, columns]
         between_m = near_m + share * (np.minimum(far_m[rows, columns], 10.0) - near_m)
         told_m[rows, columns] = np.where(chance < _MIXED, between_m, told_m[rows, columns])
         coarse = (height // _NOISE_PX + 1, width // _NOISE_PX + 1)
-        noise = rng.normal(0.0, depth.disparity_std_px, coarse).astype(np.float32)
-        noise = cv2.resize(noise, (width, height), interpolation=cv2.INTER_LINEAR)
+        blocks = rng.normal(0.0, depth.disparity_std_px, coarse).astype(np.float32)
+        noise = cv2.resize(blocks, (width, height), interpolation=cv2.INTER_LINEAR)
         disparity = f_px * depth.baseline_m / told_m + noise
         step = np.float32(depth.disparity_step_px)
         disparity = np.maximum(np.round(disparity / step), 1.0) * step
