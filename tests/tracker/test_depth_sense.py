@@ -16,6 +16,7 @@ from tracker.simulation.scene import Depth
 from tracker.simulation.stream import map_from_camera
 
 UNTIL_S = 4.5
+FLAT = np.ones((480, 640), np.float32)
 
 
 class TrueHands:
@@ -160,9 +161,9 @@ def kinds(pipeline, stamp_ns=1_000_000_000):
     ("image", "kind"),
     [
         (None, NoteKind.NO_DEPTH),
-        (DepthImage.of(9_000_000_000, "", np.ones((480, 640), np.float32)), NoteKind.DEPTH_TOO_OLD),
-        (DepthImage.of(10**9, "", np.ones((48, 640), np.float32)), NoteKind.DEPTH_UNREADABLE),
-        (DepthImage.of(10**9, "eye", np.ones((480, 640), np.float32)), NoteKind.DEPTH_NOT_LOCATED),
+        (DepthImage.of(9_000_000_000, "", FLAT), NoteKind.DEPTH_TOO_OLD),
+        (DepthImage.of(10**9, "", FLAT[:48]), NoteKind.DEPTH_UNREADABLE),
+        (DepthImage.of(10**9, "eye", FLAT), NoteKind.DEPTH_NOT_LOCATED),
     ],
     ids=["none", "old", "another shape", "a frame of no transform"],
 )  # fmt: skip

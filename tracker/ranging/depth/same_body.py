@@ -11,6 +11,8 @@ from tracker.ranging.depth.noise import depth_noise_m
 #: What two sensors show of one body is no farther apart: legs stand beside the torso, or before it
 #: where somebody sits (guess).
 _SAME_BODY_M = 0.45
+#: Noise that much larger than the scan's is soon averaged away (guess).
+_AVERAGED = 2.0
 
 
 def are_near(xy_m: FloatArray, others_xy_m: FloatArray) -> BoolArray:
@@ -23,7 +25,7 @@ def without_seen(claims: Measurements, bodies_xy_m: FloatArray, config: Config) 
     """Leave out what the scan says of bodies whose torso the depth image shows more exactly.
 
     The scan shows legs. How these stand to the torso stays the same for as long as somebody sits,
-    and does not average out; so where both sensors are as exact, the torso counts alone.
+    and does not average out, while the noise of depth does; so up to some range the torso counts alone.
 
     Args:
         claims: Of hands and of the scan, all with bearing and range from the color camera.
@@ -35,5 +37,5 @@ def without_seen(claims: Measurements, bodies_xy_m: FloatArray, config: Config) 
     direction = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
     xy_m = claims.sensor_pose[:, :2] + range_m[:, None] * direction
     of_scan = claims.hand < 0
-    is_exact = depth_noise_m(range_m, config) < config.range_std_m
+    is_exact = depth_noise_m(range_m, config) < _AVERAGED * config.range_std_m
     return claims[~(of_scan & is_exact & are_near(xy_m, bodies_xy_m))]
