@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -99,12 +99,22 @@ class DepthSense:
         camera: CameraModel,
         fixed_from_camera: RigidTransform,
         config: Config,
-    ) -> HandDepths | None:
-        """How far hands' owners are; None where no depth image tells."""
+    ) -> tuple[Hands, HandDepths | None]:
+        """How far hands' owners are; None where no depth image tells.
+
+        Returns:
+            The hands too: without the torsos that are somebody else's, as depth shows.
+        """
         if sight is None:
-            return None
-        rays = hand_rays(hands, camera, fixed_from_camera, config)
-        return hand_depths(hands, rays, sight.points, camera, fixed_from_camera, config)
+            return hands, None
+        for _ in range(2):
+            rays = hand_rays(hands, camera, fixed_from_camera, config)
+            depths = hand_depths(hands, rays, sight.points, camera, fixed_from_camera, config)
+            if not depths.is_strange.any():
+                break
+            torso_px = np.where(depths.is_strange[:, None], np.nan, hands.torso_px)
+            hands = replace(hands, torso_px=torso_px)
+        return hands, depths
 
     def complete(
         self,

@@ -220,9 +220,9 @@ class Pipeline:
             piecewise.expect(self._turn.boxes(expected_px, size))
         upright_hands = self.detector.find(self._turn.picture(image))
         hands = self._turn.hands_back(upright_hands, size)
-        depths = self._depth.ask(sight, hands, self.camera, fixed_from_camera, self.config)
+        owned, depths = self._depth.ask(sight, hands, self.camera, fixed_from_camera, self.config)
         measurements = measure_people(
-            hands,
+            owned,
             self.camera,
             fixed_from_camera,
             scan,

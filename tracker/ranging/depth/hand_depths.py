@@ -2,8 +2,8 @@
 
 Where a pose has told the torso, its chest; elsewhere the arm below the wrist. Both windows show
 what stands behind the person too, and who walks past in front: of the ranges at which many
-readings lie, the nearest counts that the hand itself does not speak against. The hand is seen, so
-nothing is before it; where it has no reading of its own, its size tells about how far it is.
+readings lie, the nearest counts that the hand itself does not speak against: its own readings, or
+else its size. Where the body is hidden, the hand's own range serves, less exactly.
 """
 
 from __future__ import annotations
@@ -37,6 +37,8 @@ _CHEST_M, _ARM_M, _BODY_STD_M = 0.11, 0.0, 0.06
 #: A hand is held no farther than this before its owner's chest, and as little behind it; both
 #: widen with the noise of the readings (guesses).
 _BEFORE_M, _BEHIND_M, _NOISES = 0.6, 0.25, 2.0
+#: Where the body is hidden: it stands about so much behind the hand, and that varies (guesses).
+_BEHIND_HAND_M, _HAND_STD_M = 0.1, 0.2
 #: A farther range counts where the hand's size fits it so much better: two standard deviations.
 _MISFIT_MAX = 4.0
 _WRIST, _MIDDLE_ROOT = 0, 9
@@ -51,11 +53,14 @@ class HandDepths:
             where the depth image does not tell.
         std_m: Shape (H,): its standard deviation.
         xy_m: Shape (H, 2): the body's place in the fixed frame; NaN where it is not told.
+        is_strange: Shape (H,): the torso that the pose has told is not at the hand's range, and so
+            it is somebody else's, who stands in front.
     """
 
     range_m: FloatArray
     std_m: FloatArray
     xy_m: FloatArray
+    is_strange: BoolArray
 
     @property
     def is_known(self) -> BoolArray:
@@ -96,7 +101,9 @@ def hand_depths(
         fixed_from_camera: The color camera with body axes, at the image's stamp.
         config: The ranging group.
     """
-    range_m, count = np.full(len(hands), np.nan), len(hands)
+    count = len(hands)
+    range_m, body_std_m = np.full(count, np.nan), np.full(count, _BODY_STD_M)
+    is_strange = np.zeros(count, dtype=bool)
     if count:
         origin_m = np.array(fixed_from_camera.translation_m)
         near = np.flatnonzero(points.range_m <= config.person_range_max_m)
@@ -104,25 +111,35 @@ def hand_depths(
         pixels = camera.pixels(offset_m @ fixed_from_camera.matrix)
         level_m = np.hypot(offset_m[:, 0], offset_m[:, 1])
         for row in range(count):
-            modes_m = _modes(level_m[_body_window(hands, row, pixels, rays.roll_rad)])
+            body_m = _modes(level_m[_body_window(hands, row, pixels, rays.roll_rad)])
             palm_m = _modes(level_m[_palm_window(hands, row, pixels, rays.roll_rad)])
-            if len(palm_m) and len(modes_m):
-                noise_m = _NOISES * depth_noise_m(palm_m[0], config)
-                before_m = modes_m - palm_m[0]
+            of_size = _fits_size(np.concatenate([palm_m, body_m]), hands[row], camera)
+            palm_m = palm_m[of_size[: len(palm_m)]][:1]
+            if len(palm_m):
+                noise_m = _NOISES * depth_noise_m(palm_m, config)
+                before_m = body_m - palm_m
                 fits = (before_m > -_BEHIND_M - noise_m) & (before_m < _BEFORE_M + noise_m)
             else:
-                misfit = size_misfit(hands[row], camera, modes_m[None])[0]
-                fits = misfit <= np.min(misfit, initial=np.inf) + _MISFIT_MAX
+                fits = _fits_size(body_m, hands[row], camera)
             if fits.any():
-                range_m[row] = modes_m[fits][0]
-        range_m += np.where(hands.is_owned, _CHEST_M, _ARM_M)
+                range_m[row] = body_m[fits][0] + (_CHEST_M if hands.is_owned[row] else _ARM_M)
+            elif len(palm_m):
+                is_strange[row] = hands.is_owned[row] and len(body_m) > 0
+                range_m[row], body_std_m[row] = palm_m[0] + _BEHIND_HAND_M, _HAND_STD_M
     heading = rays.origin[2] + rays.bearing_rad
     direction = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
     return HandDepths(
         range_m,
-        np.hypot(depth_noise_m(range_m, config), _BODY_STD_M),
+        np.hypot(depth_noise_m(range_m, config), body_std_m),
         rays.origin[:2] + range_m[:, None] * direction,
+        is_strange,
     )
+
+
+def _fits_size(range_m: FloatArray, hand: Hands, camera: CameraModel) -> BoolArray:
+    """Which ranges, shape (K,), fit the size of one hand about as well as the best; shape (K,)."""
+    misfit = size_misfit(hand, camera, range_m[None])[0]
+    return np.asarray(misfit <= np.min(misfit, initial=np.inf) + _MISFIT_MAX)
 
 
 def _body_window(hands: Hands, row: int, pixels: FloatArray, roll_rad: float) -> BoolArray:

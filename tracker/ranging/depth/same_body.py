@@ -25,7 +25,8 @@ def without_seen(claims: Measurements, bodies_xy_m: FloatArray, config: Config) 
     """Leave out what the scan says of bodies whose torso the depth image shows more exactly.
 
     The scan shows legs. How these stand to the torso stays the same for as long as somebody sits,
-    and does not average out, while the noise of depth does; so up to some range the torso counts alone.
+    and does not average out, while the noise of depth does; so up to some range the torso counts
+    alone.
 
     Args:
         claims: Of hands and of the scan, all with bearing and range from the color camera.

@@ -77,3 +77,12 @@ def test_a_depth_camera_beside_the_color_camera_tells_the_same(room, standing):
 
 def test_no_hand_asks_nothing(room, standing):
     assert len(ranged(Hands.none(), room(), standing).range_m) == 0
+
+
+def test_a_torso_at_another_range_than_the_hand_is_somebody_else_s(room, standing):
+    passer = (1.8, 0.0, 0.35, 0.0, 1.28)
+    hidden = ranged(caller(4.0, 0.1), room(*body(4.0, 0.1), passer), standing)
+    seen = ranged(caller(4.0, 0.1), room(*body(4.0, 0.1)), standing)
+    assert (hidden.is_strange[0], seen.is_strange[0]) == (True, False)
+    assert hidden.range_m[0] == pytest.approx(4.0, abs=0.25)
+    assert hidden.std_m[0] > seen.std_m[0]
