@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tracker.camera import CameraModel
@@ -80,6 +82,8 @@ def measure_people(
         range_m = np.where(depths.is_known, depths.range_m, range_m)
         range_std_m = np.where(depths.is_known, depths.std_m, range_std_m)
         claimed = np.where(depths.is_known, -1, claimed)
+        bearing_rad = np.where(depths.is_known, depths.bearing_rad, rays.bearing_rad)
+        rays = replace(rays, bearing_rad=bearing_rad)
     seen = claimed >= 0
     alone = np.flatnonzero(~seen & np.isfinite(rays.bearing_rad))
     from_hands = _hand_measurements(alone, rays, range_m, range_std_m, hands, pair, config)

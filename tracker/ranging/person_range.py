@@ -18,7 +18,7 @@ from tracker.ranging.rays import HandRays
 #: Adults' hands: from the wrist to the middle finger's root. Guess from anthropometric tables.
 _PALM_LENGTH_M = 0.095
 #: How far a raised hand stands beside the body's middle, and how much that varies (guesses).
-_BESIDE_M, _BESIDE_STD_M = 0.3, 0.2
+BESIDE_M, _BESIDE_STD_M = 0.3, 0.2
 #: The same of the middle of shoulders and hips, which a lean moves (guess).
 _TORSO_STD_M = 0.08
 #: Relative spread of a range told from a palm's size, since people differ (guess) ...
@@ -64,7 +64,7 @@ def owners(
     heading = rays.bearing_rad + rays.origin[2]
     along, across = ray_coordinates(people.xy_m, rays.origin[:2], heading)
     beside = (along > 0.0) & (np.abs(across) <= arm_reach_m)
-    offset = _BESIDE_M * owner_side(hands, rays.roll_rad)
+    offset = BESIDE_M * owner_side(hands, rays.roll_rad)
     beside_m = np.where(hands.is_owned, _TORSO_STD_M, _BESIDE_STD_M)[:, None]
     misfit = ((across - offset[:, None]) / beside_m) ** 2 + size_misfit(hands, camera, along)
     misfit += _FURNITURE_MISFIT * people.is_slim

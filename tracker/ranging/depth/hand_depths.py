@@ -19,7 +19,7 @@ from tracker.geometry import RigidTransform
 from tracker.ranging.depth.noise import depth_noise_m
 from tracker.ranging.depth.points import DepthPoints
 from tracker.ranging.depth.same_body import are_near
-from tracker.ranging.person_range import size_misfit
+from tracker.ranging.person_range import BESIDE_M, owner_side, size_misfit
 from tracker.ranging.rays import HandRays
 
 #: Windows of the picture, in hand lengths: half their width, and how far they reach up and down
@@ -52,6 +52,8 @@ class HandDepths:
         range_m: Shape (H,): level distance from the color camera to the middle of the body; NaN
             where the depth image does not tell.
         std_m: Shape (H,): its standard deviation.
+        bearing_rad: Shape (H,): of the body, as `HandRays` has it: beside the hand, on its thumb's
+            side, where the torso is not known.
         xy_m: Shape (H, 2): the body's place in the fixed frame; NaN where it is not told.
         is_strange: Shape (H,): the torso that the pose has told is not at the hand's range, and so
             it is somebody else's, who stands in front.
@@ -59,6 +61,7 @@ class HandDepths:
 
     range_m: FloatArray
     std_m: FloatArray
+    bearing_rad: FloatArray
     xy_m: FloatArray
     is_strange: BoolArray
 
@@ -126,11 +129,15 @@ def hand_depths(
             elif len(palm_m):
                 is_strange[row] = hands.is_owned[row] and len(body_m) > 0
                 range_m[row], body_std_m[row] = palm_m[0] + _BEHIND_HAND_M, _HAND_STD_M
-    heading = rays.origin[2] + rays.bearing_rad
+    sense = -1.0 if config.bearing_convention == "spec" else 1.0
+    beside_m = sense * BESIDE_M * owner_side(hands, rays.roll_rad)
+    bearing_rad = rays.bearing_rad + np.arctan2(beside_m, np.maximum(range_m, BESIDE_M))
+    heading = rays.origin[2] + bearing_rad
     direction = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
     return HandDepths(
         range_m,
         np.hypot(depth_noise_m(range_m, config), body_std_m),
+        bearing_rad,
         rays.origin[:2] + range_m[:, None] * direction,
         is_strange,
     )

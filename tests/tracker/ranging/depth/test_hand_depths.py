@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -86,3 +88,12 @@ def test_a_torso_at_another_range_than_the_hand_is_somebody_else_s(room, standin
     assert (hidden.is_strange[0], seen.is_strange[0]) == (True, False)
     assert hidden.range_m[0] == pytest.approx(4.0, abs=0.25)
     assert hidden.std_m[0] > seen.std_m[0]
+
+
+def test_without_a_torso_the_body_stands_on_the_thumb_s_side_of_the_hand(room, standing):
+    hands = caller(2.5, 0.1, owned=False)
+    landmarks = hands.landmarks_px.copy()
+    landmarks[0, 4, 0] += 460.0 * 0.1 / 2.5  # to the picture's right
+    hands = replace(hands, landmarks_px=landmarks)
+    found = ranged(hands, room(*body(2.5, 0.1)), standing)
+    assert found.xy_m[0] == pytest.approx([2.5, 0.1], abs=0.12)
