@@ -21,6 +21,8 @@ PACKAGE, NODE_NAME = "raised_hand_tracker", "hand_detector"
 TOPICS = {
     "image_topic": ("image_raw", "camera images (with image_transport:=compressed, too)"),
     "scan_topic": ("scan", "LiDAR scans"),
+    "depth_topic": ("depth", "depth images (with depth_transport:=compressed, too)"),
+    "depth_camera_info_topic": ("depth_camera_info", "a depth camera that is not registered"),
     "camera_info_topic": ("camera_info", "camera intrinsics"),
     "map_topic": ("map", "the map of the room"),
     "hand_raised_topic": ("hand_raised", "whether a hand is up"),
@@ -40,6 +42,7 @@ def generate_launch_description():
         "namespace": ("", "Namespace of the node and its topics"),
         "use_sim_time": ("false", "Take the time from /clock"),
         "image_transport": ("", "raw or compressed; empty: as the parameter file says"),
+        "depth_transport": ("", "raw or compressed; empty: as the parameter file says"),
         "lifecycle": ("false", "Start the lifecycle node, unconfigured"),
         "respawn": ("false", "Start the node again when it ends"),
         "log_level": ("info", "debug, info, warn, error or fatal"),
@@ -75,12 +78,14 @@ def _hand_detector(context):
 
     # Each by itself: launch_ros writes a dictionary to a file that it leaves behind.
     own = [Parameter("use_sim_time", is_true("use_sim_time"), value_type=bool)]
-    if value_of("image_transport"):
-        own.append(Parameter("image_transport", value_of("image_transport"), value_type=str))
+    for transport in ("image_transport", "depth_transport"):
+        if value_of(transport):
+            own.append(Parameter(transport, value_of(transport), value_type=str))
     file, full_name = value_of("params_file"), f"{value_of('namespace').strip('/')}/{NODE_NAME}"
     remappings = [(default, value_of(name)) for name, (default, _) in TOPICS.items()]
     # The compressed topic hangs below the raw one, and has to be remapped on its own.
     remappings.append(("image_raw/compressed", value_of("image_topic") + "/compressed"))
+    remappings.append(("depth/compressedDepth", value_of("depth_topic") + "/compressedDepth"))
     return [
         Node(
             package=PACKAGE,

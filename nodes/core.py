@@ -26,7 +26,7 @@ from nodes.outputs import (
     publish_nobody,
     publish_views,
 )
-from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, Input, Output
+from nodes.topics import Input, Output, input_topics
 from nodes.work_budget import WorkBudget
 from tracker.config import NODE_NAME, Config
 from tracker.containers import CameraImage, FrameResult, Scan
@@ -100,8 +100,7 @@ class NodeCore:
         self._publish, self._has_subscribers = publish, has_subscribers
         self._log, self._now_ns, self._steady_ns = log, now_ns, steady_ns
         self._config, self._links = config, links
-        names = {item: topic.name for item, topic in INPUT_TOPICS.items()}
-        names[Input.IMAGES] = IMAGE_TOPICS[config.image_transport].name
+        names = {item: topic.name for item, topic in input_topics(config).items()}
         names |= dict(topic_names or {})
         self._pipeline = Pipeline(config, detector, transforms, image_topic=names[Input.IMAGES])
         self._inbox = Inbox()
@@ -305,7 +304,13 @@ class NodeCore:
             self._take_command(message)
             return
         try:
-            events = list(decode(message.type_name, message.cdr, is_static=is_static))
+            events = decode(
+                message.type_name,
+                message.cdr,
+                is_static=is_static,
+                is_depth=item in (Input.DEPTH, Input.DEPTH_CAMERA_INFO),
+                max_pixels=self._config.picture_max_pixels,
+            )
         except TrackerError as error:
             self.refuse(item, str(error))
             return

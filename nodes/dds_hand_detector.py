@@ -28,13 +28,12 @@ from nodes.diagnostics import REPORT_PERIOD_S
 from nodes.qos import PROFILES
 from nodes.topics import (
     ENABLE_SERVICE,
-    IMAGE_TOPICS,
-    INPUT_TOPICS,
     OUTPUT_TYPES,
     RELEASE_SERVICE,
     RESET_SERVICE,
     Input,
     InputTopic,
+    input_topics,
 )
 from tracker.command_help import VersionOption, help_of
 from tracker.config import NODE_NAME, Config
@@ -90,7 +89,7 @@ class DdsHandDetector:
             output: self._node.publisher(output.value, type_name, PROFILES[output])
             for output, type_name in OUTPUT_TYPES.items()
         }
-        inputs = {Input.IMAGES: IMAGE_TOPICS[config.image_transport], **INPUT_TOPICS}
+        inputs = input_topics(config)
         links = LinkWatch(
             self._node, {item: self._subscribe(item, topic) for item, topic in inputs.items()}
         )
@@ -219,7 +218,8 @@ def command(
     """Run the node `hand_detector` without ROS: cameras and scanners in, customers out.
 
     Listens to image_raw (sensor_msgs/Image; CompressedImage with -p image_transport:=compressed),
-    scan, camera_info, /tf and /tf_static. Publishes hand_raised, customer_pose,
+    scan, depth (compressedDepth with -p depth_transport:=compressed), camera_info,
+    depth_camera_info, map, /tf and /tf_static. Publishes hand_raised, customer_pose,
     hand_detection_debug, ~/tracks, ~/markers, ~/approach_pose, ~/raised_hands, ~/waiting_list
     and /diagnostics; follows ~/command with an ~/answer; answers
     ~/release_customer, ~/enable, ~/reset and ROS 2's parameter services.

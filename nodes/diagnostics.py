@@ -100,6 +100,7 @@ class Diagnostics:
         self._reports = deque[tuple[int, dict[str, int]]](maxlen=_REPORTS + 1)
         self._last: FrameResult | None = None
         self._scan_use = ScanUse()
+        self._depth_use = ScanUse(lambda kind: kind.leaves_depth_unused)
         self._scan_clock = ClockOffset()
         self._processed = 0
         self._last_frame_ns: int | None = None
@@ -141,9 +142,10 @@ class Diagnostics:
         with self._lock:
             self._processed += 1
             self._last = result
-            self._scan_use.add(result)
-            if self._scan_use.used:
-                self._scan_use.reset()
+            for use in (self._scan_use, self._depth_use):
+                use.add(result)
+                if use.used:
+                    use.reset()
             self._latency_s.append(latency_s)
             self._busy_s.append(busy_s)
             if result.work is not None:
@@ -187,14 +189,31 @@ class Diagnostics:
             counts |= {f"{i.value} malformed": seen.malformed for i, seen in self._inputs.items()}
             self._reports.append((self._steady_ns(), counts))
             return [
-                *(self._input_status(item, is_enabled) for item in _WATCHED),
+                *(
+                    self._input_status(item, level, is_enabled)
+                    for item, level in self._watched(config).items()
+                ),
                 self._processing_status(config, detector, is_enabled),
                 self._customers_status(config, is_enabled),
             ]
 
-    def _input_status(self, item: Input, is_enabled: bool) -> Status:
+    def _watched(self, config: Config) -> dict[Input, int]:
+        """The inputs that are told apart now, and how bad it is to miss them.
+
+        Scans that never come are not missed where a depth camera serves.
+        """
+        has_depth = self._inputs[Input.DEPTH].last_ns is not None
+        has_scans = self._inputs[Input.SCAN].last_ns is not None
+        if config.depth_source == "scan" or (config.depth_source == "both" and not has_depth):
+            return _WATCHED
+        watched = _WATCHED | {Input.DEPTH: WARN}
+        if config.depth_source == "depth" or not has_scans:
+            del watched[Input.SCAN]
+        return watched
+
+    def _input_status(self, item: Input, missed: int, is_enabled: bool) -> Status:
         seen = self._inputs[item]
-        level, message = self._judge(item)
+        level, message = self._judge(item, missed)
         if level != OK and not is_enabled:
             level, message = OK, "disabled"
         elif level != OK and self._is_settling():
@@ -216,8 +235,8 @@ class Diagnostics:
             values["last_fault"] = seen.last_fault
         return Status(item.value, level, message, values, is_news=not is_fault)
 
-    def _judge(self, item: Input) -> tuple[int, str]:
-        seen, level = self._inputs[item], _WATCHED[item]
+    def _judge(self, item: Input, missed: int) -> tuple[int, str]:
+        seen, level = self._inputs[item], missed
         if item is Input.CAMERA_INFO:  # one is enough, and many drivers send no more
             notes = self._last.notes if self._last is not None else ()
             for note in notes:
@@ -252,6 +271,10 @@ class Diagnostics:
         unused = self._scan_use.frames
         if item is Input.SCAN and unused >= _UNUSED_IMAGES:
             return WARN, f"no scan was used in the last {unused} images: {self._scan_use.reason()}"
+        unused = self._depth_use.frames
+        if item is Input.DEPTH and unused >= _UNUSED_IMAGES:
+            why = self._depth_use.reason()
+            return WARN, f"no depth was used in the last {unused} images: {why}"
         ahead_s = self._scan_clock.ahead_s()
         if item is Input.SCAN and _AHEAD_S < ahead_s < _OTHER_TIME_S:
             return WARN, f"stamps are {ahead_s:.3f} s ahead of the node's clock: other clocks?"

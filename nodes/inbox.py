@@ -37,6 +37,8 @@ _KEPT = {
     Input.CAMERA_INFO: 40,
     Input.SCAN: 40,
     Input.COMMANDS: 100,
+    Input.DEPTH_CAMERA_INFO: 20,
+    Input.DEPTH: 20,
 }
 
 

@@ -17,9 +17,9 @@ from nodes.dds.node import Node
 from nodes.dds.profiles import CLOCK, DEFAULT
 from nodes.qos import PROFILES, Profile
 from nodes.topics import Input
-from tracker.camera import CameraModel
+from tracker.camera import CameraModel, DepthCamera
 from tracker.closing import Closing
-from tracker.containers import CameraImage, OccupancyGrid, Scan
+from tracker.containers import CameraImage, DepthImage, OccupancyGrid, Scan
 from tracker.errors import ConfigError, RecordingError
 from tracker.messages import CameraInfo, Encodable, Event, encode, types
 from tracker.messages.types import build, serialize, typestore
@@ -265,6 +265,12 @@ def _said(
             return topics.image, event
         case Scan():
             return topics.scan, event
+        case DepthImage():
+            return topics.depth.removesuffix("/compressedDepth"), event
+        case DepthCamera():
+            own = event.camera
+            info = CameraInfo(log_ns, "", own.width or 0, own.height or 0, own)
+            return topics.depth_camera_info, info
         case StampedTransform():
             return topics.tf_static if event.is_static else topics.tf, event
         case OccupancyGrid():
@@ -283,6 +289,8 @@ def _said_types(recording: Recording) -> dict[str, str]:
         topics.scan: (recording.has_scans, types.LASER_SCAN),
         topics.camera_info: (recording.has_camera_info, types.CAMERA_INFO),
         topics.map: (recording.has_map, types.OCCUPANCY_GRID),
+        topics.depth.removesuffix("/compressedDepth"): (recording.has_depth, types.IMAGE),
+        topics.depth_camera_info: (recording.has_depth, types.CAMERA_INFO),
         topics.tf: (recording.has_transforms, types.TF_MESSAGE),
         topics.tf_static: (recording.has_transforms, types.TF_MESSAGE),
     }

@@ -36,6 +36,12 @@ PROFILES: dict[Input | Output, Profile] = {
     Input.SCAN: Profile(
         False, False, 10, "Scanners offer best effort; a few are kept for busy moments.",
     ),
+    Input.DEPTH: Profile(
+        False, False, 5, "As images.",
+    ),
+    Input.DEPTH_CAMERA_INFO: Profile(
+        False, False, 5, "As camera_info.",
+    ),
     Input.CAMERA_INFO: Profile(
         False, False, 5, "Comes with each image, as the image does.",
     ),

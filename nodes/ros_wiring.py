@@ -33,13 +33,12 @@ from nodes.ros_parameters import RosParameters
 from nodes.tf2_transforms import Tf2Transforms
 from nodes.topics import (
     ENABLE_SERVICE,
-    IMAGE_TOPICS,
-    INPUT_TOPICS,
     OUTPUT_TYPES,
     RELEASE_SERVICE,
     RESET_SERVICE,
     Input,
     Output,
+    input_topics,
 )
 from tracker.config import Config
 from tracker.errors import TrackerError
@@ -77,10 +76,9 @@ class RosWiring:
         self._node, self._parameters = node, parameters
         self._domain_id = node.context.get_domain_id()
         config = parameters.config
-        topics = {Input.IMAGES: IMAGE_TOPICS[config.image_transport]} | INPUT_TOPICS
         self._topics = {
             item: (node.resolve_topic_name(name), _CLASSES[kind])
-            for item, (name, kind) in topics.items()
+            for item, (name, kind) in input_topics(config).items()
         }
         self._buffer = Buffer(node=node)
         try:

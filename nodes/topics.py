@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import NamedTuple
 
+from tracker.config import Config
 from tracker.messages import types
 
 #: diagnostic_msgs is only spoken by the nodes.
@@ -16,6 +17,8 @@ class Input(str, Enum):
 
     IMAGES = "images"
     SCAN = "scan"
+    DEPTH = "depth"
+    DEPTH_CAMERA_INFO = "depth_camera_info"
     TRANSFORMS = "transforms"
     STATIC_TRANSFORMS = "static transforms"
     CAMERA_INFO = "camera_info"
@@ -51,14 +54,34 @@ IMAGE_TOPICS = {
     "compressed": InputTopic("image_raw/compressed", types.COMPRESSED_IMAGE),
 }
 
+#: By `depth_transport`, likewise.
+DEPTH_TOPICS = {
+    "raw": InputTopic("depth", types.IMAGE),
+    "compressed": InputTopic("depth/compressedDepth", types.COMPRESSED_IMAGE),
+}
+
 INPUT_TOPICS = {
     Input.SCAN: InputTopic("scan", types.LASER_SCAN),
     Input.CAMERA_INFO: InputTopic("camera_info", types.CAMERA_INFO),
     Input.MAP: InputTopic("map", types.OCCUPANCY_GRID),
+    Input.DEPTH_CAMERA_INFO: InputTopic("depth_camera_info", types.CAMERA_INFO),
     Input.TRANSFORMS: InputTopic("/tf", types.TF_MESSAGE),
     Input.STATIC_TRANSFORMS: InputTopic("/tf_static", types.TF_MESSAGE),
     Input.COMMANDS: InputTopic("~/command", types.STRING),
 }
+
+
+def input_topics(config: Config) -> dict[Input, InputTopic]:
+    """Every topic that a node listens to."""
+    chosen = {Input.IMAGES: IMAGE_TOPICS[config.image_transport]}
+    if config.depth_source == "scan":
+        return chosen | {
+            item: topic
+            for item, topic in INPUT_TOPICS.items()
+            if item is not Input.DEPTH_CAMERA_INFO
+        }
+    return chosen | {Input.DEPTH: DEPTH_TOPICS[config.depth_transport]} | INPUT_TOPICS
+
 
 OUTPUT_TYPES = {
     Output.HAND_RAISED: types.BOOL,

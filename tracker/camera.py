@@ -42,6 +42,13 @@ class Pinhole(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class DepthCamera:
+    """The intrinsics of a depth camera, which must not be taken for the color camera's."""
+
+    camera: CameraModel
+
+
+@dataclass(frozen=True, slots=True)
 class CameraModel:
     """Intrinsics of pictures of one size.
 

@@ -286,6 +286,20 @@ class Config(BaseModel):
         "among all people; spec: the median of the beams at the ray (algorithm 5).",
         group="ranging", live=True,
     )  # fmt: skip
+    depth_source: Literal["both", "scan", "depth"] = _parameter(
+        "both", "What tells how far people are: scan (the LiDAR), depth (a depth camera) or both, "
+        "as far as they come. Without depth images both is the same as scan.",
+        group="ranging", live=True,
+    )  # fmt: skip
+    depth_std_m: float = _parameter(
+        0.005, "Range noise of the depth camera at 1 m; it grows with the square of the range.",
+        unit="m", group="ranging", live=True, ge=0.0, le=1.0,
+    )  # fmt: skip
+    depth_height_min_m: float = _parameter(
+        0.85, "Bodies are looked for in the depth image above this height over the floor, which "
+        "leaves out tables and chairs. A camera below it that does not look up wants less.",
+        unit="m", group="ranging", live=True, ge=0.05, le=1.9,
+    )  # fmt: skip
     scan_window_beams: int = _parameter(
         3, "Beams to each side of the ray whose median counts (algorithm 5).",
         unit="beams", group="ranging", live=True, ge=0, le=90,
@@ -563,6 +577,11 @@ class Config(BaseModel):
     waiting_list_file: str = _parameter(
         "", "File in which a node keeps the waiting list, so that it goes on with it when it is "
         "started again; empty keeps none.",
+        group="node",
+    )  # fmt: skip
+    depth_transport: Literal["raw", "compressed"] = _parameter(
+        "raw", "How a node gets its depth images: raw (`depth`) or compressed "
+        "(`depth/compressedDepth`).",
         group="node",
     )  # fmt: skip
     image_silence_s: float = _parameter(

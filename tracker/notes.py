@@ -21,6 +21,10 @@ class NoteKind(Enum):
     SCAN_IN_MILLIMETERS = "scan in millimeters"
     SCAN_IN_DEGREES = "scan in degrees"
     SCAN_THINNED = "scan thinned"
+    NO_DEPTH = "no depth"
+    DEPTH_TOO_OLD = "depth too old"
+    DEPTH_NOT_LOCATED = "depth not located"
+    DEPTH_UNREADABLE = "depth unreadable"
     LASER_MOUNTING_UNKNOWN = "laser mounting unknown"
     MAP_NOT_LOCATED = "map not located"
     CAMERA_INFO_REFUSED = "CameraInfo refused"
@@ -46,12 +50,18 @@ class NoteKind(Enum):
         """Whether it tells why no scan was of use for an image."""
         return self in _WITHOUT_SCAN
 
+    @property
+    def leaves_depth_unused(self) -> bool:
+        """Whether it tells why no depth image was of use for an image."""
+        return self in _WITHOUT_DEPTH
+
 
 _FAULTS = frozenset(
     {
         NoteKind.CLOCK_JUMPED,
         NoteKind.SCAN_WITHOUT_BEAMS,
         NoteKind.CAMERA_INFO_REFUSED,
+        NoteKind.DEPTH_UNREADABLE,
     }
 )
 _REMARKS = frozenset(
@@ -77,6 +87,14 @@ _WITHOUT_SCAN = frozenset(
         NoteKind.SCAN_WITHOUT_RETURNS,
         NoteKind.SCAN_NOT_LOCATED,
         NoteKind.SCAN_TOO_STEEP,
+    }
+)
+_WITHOUT_DEPTH = frozenset(
+    {
+        NoteKind.NO_DEPTH,
+        NoteKind.DEPTH_TOO_OLD,
+        NoteKind.DEPTH_NOT_LOCATED,
+        NoteKind.DEPTH_UNREADABLE,
     }
 )
 

@@ -1,6 +1,6 @@
 """The whole way of one frame, used alike by replay, the nodes and the evaluation.
 
-    image -> perception -> Hands -> ranging (+ scan, transforms) -> Measurements -> tracking
+    image -> perception -> Hands -> ranging (+ scan, depth, transforms) -> Measurements -> tracking
 
 Sensor data are pushed in as they come; images wait for the transform of their own stamp. Time is
 the data's own: nothing here reads a clock.
@@ -14,16 +14,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tracker.camera import CameraModel
+from tracker.camera import CameraModel, DepthCamera
 from tracker.config import Config
 from tracker.containers import (
     CameraImage,
+    DepthImage,
     FrameResult,
     LocatedScan,
     OccupancyGrid,
     Scan,
     WaitingList,
 )
+from tracker.depth_sense import DepthSense, DepthSight
 from tracker.geometry import RigidTransform
 from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan, shown_ns
 from tracker.notes import Note, NoteKind
@@ -87,6 +89,7 @@ class Pipeline:
         self._cameras = PictureCameras(self.config, image_topic)
         self._sustained_ns = -1
         self._memory = Memory()
+        self._depth = DepthSense()
         self._last_stamp_ns: int | None = None
         self._camera_locator = CameraLocator()
         self._map_locator = MapLocator()
@@ -119,6 +122,10 @@ class Pipeline:
             return self.add_image(event, now_ns)
         if isinstance(event, Scan):
             self.add_scan(event)
+        elif isinstance(event, DepthImage):
+            self.room.add_depth(event)
+        elif isinstance(event, DepthCamera):
+            self._depth.calibrate(event.camera)
         elif isinstance(event, StampedTransform):
             self.add_transform(event)
         elif isinstance(event, CameraModel):
@@ -216,14 +223,11 @@ class Pipeline:
         if self._restored is not None and place.is_located:
             self._restore_calls(image.stamp_ns)
         fixed_from_camera = place.fixed_from_camera
-        scan, scan_notes = choose_scan(
-            self.room.scans_by_age(stamp_ns),
-            self.transforms,
-            stamp_ns,
-            place,
-            self.config,
+        sight, depth_notes = self._depth.look(
+            self.room, stamp_ns, image.frame_id, place, self.camera, self.config
         )
-        self._notes += scan_notes
+        self._notes += depth_notes
+        scan = self._choose_scan(stamp_ns, place, has_depth=sight is not None)
         room, map_notes = self._map_locator.locate(
             self.transforms, image.stamp_ns, place, self.config
         )
@@ -232,14 +236,16 @@ class Pipeline:
         piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
         self._turn_upright(fixed_from_camera)
         if piecewise is not None and place.is_located:
-            known_xy_m = np.concatenate([self.tracker.positions_m, people.xy_m])
+            seen = [people.xy_m] if sight is None else [people.xy_m, sight.bodies.people.xy_m]
+            known_xy_m = np.concatenate([self.tracker.positions_m, *seen])
             expected_px = expected_hands(known_xy_m, self.camera, fixed_from_camera)
             piecewise.expect(self._turn.boxes(expected_px, size))
         upright_hands = self.detector.find(self._turn.picture(image))
         hands = self._turn.hands_back(upright_hands, size)
         tracked = self.tracker.people
+        owned, depths = self._depth.ask(sight, hands, self.camera, fixed_from_camera, self.config)
         measurements = measure_people(
-            hands,
+            owned,
             self.camera,
             fixed_from_camera,
             scan,
@@ -250,6 +256,7 @@ class Pipeline:
             memory=self._memory,
             tracked=tracked,
             stamp_ns=image.stamp_ns,
+            depths=depths,
         )
         beyond = len(hands) - np.count_nonzero(measurements.hand >= 0)
         if beyond:
@@ -258,18 +265,26 @@ class Pipeline:
             self._note(NoteKind.HAND_BEYOND_LENS, text)
         if scan is not None:
             self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
+        if sight is not None and depths is not None:
+            measurements = self._depth.complete(
+                measurements, sight, hands, depths, image.stamp_ns, self.config
+            )
+            self._memory.background.free(people.xy_m[depths.claims(people.xy_m, hands.raised)])
         robot_xy_m = fixed_from_camera.planar[:2]
         tracks = self.tracker.step(
             image.stamp_ns,
             measurements,
             robot_xy_m,
             view=self._camera_view(image, fixed_from_camera),
-            scan_view=self._scan_view(scan),
-            likeness=self._memory.ownership.likeness(measurements, len(tracked)),
+            scan_view=self._scan_view(scan, sight),
+            likeness=self._memory.ownership.likeness(
+                measurements, len(tracked), None if depths is None else depths.is_known
+            ),
         )
         self._memory.postures.learn(tracks, hands)
         customers_xy_m = tracks.mean[tracks.confirmed, :2]
         self._memory.background.spare(customers_xy_m, self.config.same_person_distance_m)
+        self._depth.spare(customers_xy_m, self.config.same_person_distance_m)
         pose = approach = None
         if place.is_located:
             pose = customer_pose(tracks, robot_xy_m, self.config.fixed_frame, self.config)
@@ -284,7 +299,7 @@ class Pipeline:
             customer_pose=pose,
             approach_pose=approach,
             sensor_pose=fixed_from_camera.planar if place.is_located else None,
-            scan=scan,
+            scan=scan if scan is not None or sight is None else sight.bodies.slice,
             notes=tuple(self._notes),
             frame_id=place.frame_id,
             work=piecewise.work if piecewise is not None else None,
@@ -318,6 +333,7 @@ class Pipeline:
     def _forget(self) -> None:
         self.tracker.reset()
         self._memory.reset()
+        self._depth.reset()
         self.detector.reset()
         self._camera_locator.reset()
         self._sustained_ns = -1
@@ -356,6 +372,7 @@ class Pipeline:
             )
             self.tracker.reset()
             self._memory.background.reset()
+            self._depth.reset()
         if place.moved is not None:
             self.tracker.doubt(place.moved, place.unseen_s)
         return place
@@ -370,6 +387,19 @@ class Pipeline:
                 NoteKind.CALLS_OF_LATER,
                 f"the kept waiting list is {ahead_s:.1f} s later than the images: it begins empty",
             )
+
+    def _choose_scan(
+        self, stamp_ns: int, place: CameraPlace, *, has_depth: bool
+    ) -> LocatedScan | None:
+        """The scan for an instant, where scans are wanted."""
+        if self.config.depth_source == "depth":
+            return None
+        waiting = self.room.scans_by_age(stamp_ns)
+        if has_depth and not waiting:
+            return None
+        scan, notes = choose_scan(waiting, self.transforms, stamp_ns, place, self.config)
+        self._notes += notes
+        return scan
 
     def _turn_upright(self, fixed_from_camera: RigidTransform) -> None:
         """The detector sees pictures in which up is up; it begins again where the turn changes."""
@@ -388,10 +418,15 @@ class Pipeline:
             fixed_from_camera.planar, right_rad, left_rad, self.config.person_range_max_m
         )
 
-    def _scan_view(self, scan: LocatedScan | None) -> View | None:
-        """Where the scan could show people; None where there is none, or it is not asked."""
-        if scan is None or not self.config.scan_sustains:
+    def _scan_view(self, scan: LocatedScan | None, sight: DepthSight | None) -> View | None:
+        """Where the scan could show people, or else the depth image; None where none is asked.
+
+        Where there are both, what the depth image shows the camera sees as well.
+        """
+        if not self.config.scan_sustains:
             return None
+        if scan is None:
+            return None if sight is None else sight.view(self.config.person_range_max_m)
         range_max_m = min(scan.range_max_m, self.config.person_range_max_m)
         return View.between(np.append(scan.laser_xy_m, 0.0), *scan.span_rad, range_max_m)
 

@@ -25,6 +25,7 @@ class Problems:
         self._frames = self._unlocated = 0
         self._first_unlocated = ""
         self._scan_use = ScanUse()
+        self._depth_use = ScanUse(lambda kind: kind.leaves_depth_unused)
         self._parent_of: dict[str, str] = {}
         self._image_clock, self._scan_clock = ClockOffset(), ClockOffset()
         self._transform_clock = ClockOffset()
@@ -51,6 +52,7 @@ class Problems:
     def note_frame(self, result: FrameResult) -> None:
         """Pick the faults from what the pipeline noted about one image."""
         self._scan_use.add(result)
+        self._depth_use.add(result)
         self._frames += 1
         for note in result.notes:
             if note.kind is NoteKind.NO_POSE:
@@ -105,6 +107,16 @@ class Problems:
                 f"a scan was used in {use.used} of {counted(use.frames, 'image')} only: "
                 f"{use.reason()}"
             )
+
+    def note_depth_use(self) -> None:
+        """Say whether the depth images that came were of any use."""
+        use = self._depth_use
+        if use.frames and use.used <= _NEVER_SHARE * use.frames:
+            images = counted(use.frames, "image")
+            self.add("depth unused", f"depth was used in {use.used} of {images}: {use.reason()}")
+        elif use.used < _SERVED_SHARE * use.frames:
+            images = counted(use.frames, "image")
+            self.remark(f"depth was used in {use.used} of {images} only: {use.reason()}")
 
     def _note_parent(self, child: str, parent: str) -> None:
         before = self._parent_of.setdefault(child, parent)

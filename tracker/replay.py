@@ -149,8 +149,10 @@ def replay(
                 problems.add("broken recording", str(error))
             advance()
         _note_missing(pipeline, recording, history, problems, config)
-        if recording.has_scans:
+        if recording.has_scans and config.depth_source != "depth":
             problems.note_scan_use(config.scan_max_age_s)
+        if recording.has_depth and config.depth_source != "scan":
+            problems.note_depth_use()
         for reason in recording.unread_lines():
             problems.add(reason, reason)
         for reason in recording.skipped_lines():
@@ -209,8 +211,14 @@ def _note_missing(
     """A bag whose frames never connect gives no pose: a problem of the input."""
     if not recording.is_bag or not history.frames_processed:
         return
-    if not recording.has_scans:
+    if not recording.has_scans and not recording.has_depth:
         problems.remark("no scans in the recording: raised hands have a bearing and no range")
+    if config.depth_source == "depth" and not recording.has_depth:
+        problems.add(
+            "no depth",
+            f"depth_source is depth, and no depth images are on {recording.read_topics.depth}: "
+            "raised hands have a bearing and no range. Pass --depth-topic, or set depth_source.",
+        )
     if len(history.camera_path):
         problems.note_poses()
         return

@@ -1,13 +1,19 @@
-"""Is the LiDAR of any use? A scanner of which nothing is used must not go unnoticed."""
+"""Is the LiDAR of any use? A sensor of which nothing is used must not go unnoticed."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 
 from tracker.containers import FrameResult
 from tracker.notes import NoteKind
 
 _REMEDIES = {
+    NoteKind.NO_DEPTH: "Remap `depth`, and set depth_transport",
+    NoteKind.DEPTH_TOO_OLD: "Do the clocks of both cameras agree? If so, raise scan_max_age_s",
+    NoteKind.DEPTH_NOT_LOCATED: "A transform must connect the depth camera's frame with "
+    "fixed_frame at the depth image's stamp",
+    NoteKind.DEPTH_UNREADABLE: "Check the driver's encoding and its depth_camera_info",
     NoteKind.SCAN_TOO_OLD: "Do the clocks of camera and scanner agree? If they do, raise "
     "scan_max_age_s",
     NoteKind.SCAN_NOT_LOCATED: "A transform must connect the scanner's frame with fixed_frame at "
@@ -21,12 +27,19 @@ _REMEDIES = {
 class ScanUse:
     """Counts the images for which a scan was used, and why not for the others.
 
+    Args:
+        leaves_unused: Which kinds of notes say why not; by default those about scans.
+
     Attributes:
         frames: Images since the beginning, or since `reset`.
-        used: Those of them for which a scan showed something.
+        used: Those of them for which it showed something.
     """
 
-    def __init__(self) -> None:
+    def __init__(
+        self,
+        leaves_unused: Callable[[NoteKind], bool] = lambda kind: kind.leaves_scan_unused,
+    ) -> None:
+        self._leaves_unused = leaves_unused
         self.reset()
 
     def reset(self) -> None:
@@ -38,7 +51,7 @@ class ScanUse:
     def add(self, result: FrameResult) -> None:
         """Take in what one image led to."""
         self.frames += 1
-        reasons = [note for note in result.notes if note.kind.leaves_scan_unused]
+        reasons = [note for note in result.notes if self._leaves_unused(note.kind)]
         self.used += not reasons
         for note in reasons:
             self._kinds[note.kind] += 1

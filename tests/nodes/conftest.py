@@ -15,6 +15,7 @@ from mcap.reader import make_reader
 from nodes.core import NodeCore
 from nodes.topics import Input, Output
 from tracker import CameraImage, Config, Hands, Scan
+from tracker.containers import DepthImage
 from tracker.geometry import RigidTransform
 from tracker.messages import encode
 from tracker.messages.types import deserialize
@@ -80,6 +81,10 @@ class Wire:
         ranges = np.where(np.abs(angles) < 0.15, 2.0, 6.0)
         scan = Scan(stamp_ns, "laser", -np.pi, 2 * np.pi / 359, 0.05, 12.0, ranges)
         self.core.receive(Input.SCAN, encode(scan))
+
+    def depth(self, stamp_ns):
+        pixels = np.full((48, 64), 2000, np.uint16)
+        self.core.receive(Input.DEPTH, encode(DepthImage.of(stamp_ns, "camera_link", pixels)))
 
     def mounting(self):
         for child in ("camera_link", "laser"):

@@ -329,3 +329,15 @@ def test_a_scanner_of_which_nothing_is_used_is_told_with_its_reason(wire):
     assert "0.8" in status.message
     play(wire, 4, START_NS + 40 * FRAME_NS)
     assert wire.diagnose()["scan"].message == "coming"
+
+
+def test_depth_gives_the_pose_where_no_scanner_is(wire):
+    wire.mounting()
+    wire.base(START_NS - 1_000_000)
+    for number in range(4):
+        stamp_ns = START_NS + number * PERIOD_NS
+        wire.base(stamp_ns + 1)
+        wire.depth(stamp_ns)
+        wire.image(stamp_ns)
+        wire.settle()
+    assert wire.messages(Output.CUSTOMER_POSE)[-1].pose.position.x == pytest.approx(2.0, abs=0.2)

@@ -195,3 +195,44 @@ def test_two_robots_are_told_apart_by_the_nodes_full_name(make_wire):
     for status in wire.messages(Output.DIAGNOSTICS)[-1].status:
         assert status.name.startswith("robot1/hand_detector: ")
         assert status.hardware_id == "robot1/hand_detector"
+
+
+def test_without_a_depth_camera_nothing_is_said_of_depth(wire):
+    assert "depth" not in wire.diagnose()
+
+
+def test_a_depth_camera_is_told_of_and_no_scanner_is_missed_then(make_wire):
+    wire = make_wire()
+    wire.mounting()
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 1)
+    wire.depth(START_NS)
+    wire.image(START_NS)
+    wire.settle()
+    found = wire.diagnose()
+    assert (found["depth"].level, found["depth"].message) == (OK, "coming")
+    assert "scan" not in found
+    wire.steady_ns += 900_000_000
+    stale = wire.diagnose()["depth"]
+    assert (stale.level, stale.message) == (WARN, "stale: nothing has come on depth for 0.9 s")
+
+
+def test_a_depth_camera_that_is_wanted_and_missing_is_told(make_wire):
+    found = make_wire(Config(depth_source="depth", depth_transport="compressed")).diagnose()
+    assert found["depth"].level == WARN
+    assert found["depth"].message == "missing: nothing has come on depth/compressedDepth"
+
+
+def test_depth_of_which_nothing_is_used_is_told_with_the_reason(make_wire):
+    wire = make_wire()
+    wire.mounting()
+    wire.base(START_NS - 1)
+    wire.base(START_NS + 3_000_000_000)
+    wire.depth(START_NS)
+    for number in range(10):
+        wire.image(START_NS + 500_000_000 + number * 100_000_000)
+        wire.settle()
+    depth = wire.diagnose()["depth"]
+    assert depth.level == WARN
+    assert "no depth was used in the last" in depth.message
+    assert "clocks" in depth.message

@@ -1,5 +1,5 @@
 from nodes.qos import PROFILES
-from nodes.topics import IMAGE_TOPICS, INPUT_TOPICS, OUTPUT_TYPES, Input, Output
+from nodes.topics import DEPTH_TOPICS, IMAGE_TOPICS, INPUT_TOPICS, OUTPUT_TYPES, Input, Output
 from tracker.messages import definition
 
 
@@ -20,8 +20,9 @@ def test_sensors_are_heard_best_effort_and_the_state_is_latched():
 
 
 def test_every_topic_has_a_type_that_is_spoken():
-    kinds = [topic.type_name for topic in [*IMAGE_TOPICS.values(), *INPUT_TOPICS.values()]]
+    topics = [IMAGE_TOPICS, DEPTH_TOPICS, INPUT_TOPICS]
+    kinds = [topic.type_name for named in topics for topic in named.values()]
     for kind in [*kinds, *OUTPUT_TYPES.values()]:
         assert definition(kind)
-    assert set(INPUT_TOPICS) == set(Input) - {Input.IMAGES}
+    assert set(INPUT_TOPICS) == set(Input) - {Input.IMAGES, Input.DEPTH}
     assert set(OUTPUT_TYPES) == set(Output)

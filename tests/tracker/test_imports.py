@@ -21,6 +21,7 @@ FLOORS = [
     {"camera", "transforms", "compiling", "service"},
     {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
     {"problems", "picture_camera", "locating"},
+    {"depth_sense"},
     {"pipeline", "recording"},
     {"simulation"},
     {"evaluation.metrics"},

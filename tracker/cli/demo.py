@@ -34,6 +34,9 @@ def demo_command(
     ] = "restaurant",
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the files.")] = Path("demo"),
     seed: Annotated[int, typer.Option(help="Of the simulated noise.", min=0)] = 1,
+    depth: Annotated[
+        bool, typer.Option("--depth", help="With a depth camera instead of the LiDAR.")
+    ] = False,
     config: ConfigOption = None,
     param: ParameterOption = None,
     as_json: JsonOption = False,
@@ -48,6 +51,8 @@ def demo_command(
     from tracker.report.episode_table import episode_table
 
     parameters = parameters_from(config, param)
+    if depth:
+        parameters = parameters.replace(depth_source="depth")
     recording = out / "recording.mcap"
     given = Path(scene) if Path(scene).is_file() else None
     check_inputs_stay(
@@ -55,7 +60,7 @@ def demo_command(
     )
     fetch_models_if_needed(errors)
     compile_tracker_first(errors)
-    simulate(scene, recording, seed, _DEMO_JPEG_QUALITY, force=True)
+    simulate(scene, recording, seed, _DEMO_JPEG_QUALITY, force=True, with_depth=depth)
     with bar(errors, "Replaying") as progress:
         result = replay(recording, out, parameters, progress=progress)
     episodes = result.episodes

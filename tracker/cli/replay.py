@@ -38,7 +38,7 @@ def replay_command(
         Path,
         typer.Argument(
             help="rosbag2 folder, .mcap, .db3, ROS 1 .bag, a video, or a folder of photos "
-            "(without LiDAR, bearings only)."
+            "(without LiDAR and depth, bearings only)."
         ),
     ],
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the files.")] = Path("out"),
@@ -47,6 +47,10 @@ def replay_command(
     image_topic: Annotated[str, typer.Option(help="Camera images.")] = "/image_raw",
     scan_topic: Annotated[str, typer.Option(help="LiDAR scans.")] = "/scan",
     camera_info_topic: Annotated[str, typer.Option(help="Intrinsics.")] = "/camera_info",
+    depth_topic: Annotated[str, typer.Option(help="Depth images.")] = "/depth",
+    depth_camera_info_topic: Annotated[
+        str, typer.Option(help="Intrinsics of a depth camera that is not registered.")
+    ] = "/depth_camera_info",
     tf_topic: Annotated[str, typer.Option(help="Moving transforms.")] = "/tf",
     tf_static_topic: Annotated[str, typer.Option(help="Lasting transforms.")] = "/tf_static",
     map_topic: Annotated[str, typer.Option(help="The map of the room.")] = "/map",
@@ -107,6 +111,8 @@ def replay_command(
         tf=tf_topic,
         tf_static=tf_static_topic,
         map=map_topic,
+        depth=depth_topic,
+        depth_camera_info=depth_camera_info_topic,
     )
     viewer, said = None, ""
     with ExitStack() as stack:

@@ -20,6 +20,9 @@ def simulate_command(
         int | None,
         typer.Option(help="Images as JPEG of this quality; a twentieth the size.", min=1, max=100),
     ] = None,
+    depth: Annotated[
+        bool, typer.Option("--depth", help="With a depth camera, also where the scene has none.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace what is there.")] = False,
 ) -> None:
     """Play a scene of people, tables and a robot into a recording.
@@ -27,18 +30,21 @@ def simulate_command(
     Rendered camera images, ray-cast scans, transforms, CameraInfo, and the truth on a topic of its
     own. Scenes are YAML; those in config/scenes are examples.
     """
-    simulate(scene, out, seed, jpeg, force=force)
+    simulate(scene, out, seed, jpeg, force=force, with_depth=depth)
     print_files((out,))
 
 
-def simulate(scene: str, out: Path, seed: int, jpeg: int | None, *, force: bool) -> None:
+def simulate(
+    scene: str, out: Path, seed: int, jpeg: int | None, *, force: bool, with_depth: bool = False
+) -> None:
     """Play a scene into a recording, with a bar that tells how far it is."""
     from tracker.recording import recording_files
-    from tracker.simulation import load_scene, write_simulation
+    from tracker.simulation import load_scene, with_depth_camera, write_simulation
 
     if Path(scene).is_file():
         check_inputs_stay([Path(scene)], {out, *recording_files(out)})
     loaded = load_scene(scene)
+    loaded = with_depth_camera(loaded) if with_depth else loaded
     with bar(errors, f"Simulating {Path(scene).stem}") as progress:
         write_simulation(
             loaded,

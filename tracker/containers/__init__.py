@@ -11,6 +11,7 @@ from tracker.containers.arrays import (
     IntArray,
     check_stamp,
 )
+from tracker.containers.depth_image import DepthArray, DepthImage, depth_in_meters
 from tracker.containers.hands import Hands, Refusal
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
@@ -27,6 +28,8 @@ __all__ = [
     "CallState",
     "Caller",
     "CameraImage",
+    "DepthArray",
+    "DepthImage",
     "FloatArray",
     "FrameResult",
     "Hands",
@@ -45,4 +48,5 @@ __all__ = [
     "View",
     "WaitingList",
     "check_stamp",
+    "depth_in_meters",
 ]

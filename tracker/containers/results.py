@@ -122,7 +122,8 @@ class FrameResult:
             is selected or the estimate is not good enough to drive to.
         approach_pose: In front of that customer, facing the customer.
         sensor_pose: x_m, y_m, yaw_rad of the camera in the fixed frame; None without a transform.
-        scan: The scan that was used, in the fixed frame, if any.
+        scan: The scan that was used, in the fixed frame, if any; without one, what a depth image
+            shows at the height of bodies.
         notes: What was missing or odd about this image.
         frame_id: The frame that `tracks` are in: the fixed one; before the first transform the
             camera's. None where it is unknown, so that no place can be given: a transform is

@@ -7,17 +7,27 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tracker.camera import CameraModel, Pinhole, Sensor
-from tracker.containers import CameraImage, OccupancyGrid, Scan, Truth
+from tracker.camera import CameraModel, DepthCamera, Pinhole, Sensor
+from tracker.containers import CameraImage, DepthImage, OccupancyGrid, Scan, Truth
 from tracker.errors import ConfigError, RecordingError, ShapeError
 from tracker.geometry import RigidTransform
 from tracker.messages import types
+from tracker.messages.depth import depth_from_compressed, depth_from_image
 from tracker.messages.images import Picture, picture_from_compressed, picture_from_image
 from tracker.messages.picture_size import MAX_PIXELS
 from tracker.transforms import StampedTransform
 
 #: What sensors, and simulations, say.
-Event: TypeAlias = CameraImage | Scan | StampedTransform | CameraModel | OccupancyGrid | Truth
+Event: TypeAlias = (
+    CameraImage
+    | DepthImage
+    | Scan
+    | StampedTransform
+    | CameraModel
+    | DepthCamera
+    | OccupancyGrid
+    | Truth
+)
 
 
 def decode(
@@ -25,6 +35,7 @@ def decode(
     cdr: bytes | memoryview,
     *,
     is_static: bool = False,
+    is_depth: bool = False,
     max_pixels: int = MAX_PIXELS,
 ) -> list[Event]:
     """Read one serialized message.
@@ -33,6 +44,7 @@ def decode(
         type_name: `package/msg/Name`; one of `DECODABLE`.
         cdr: The serialized message with its encapsulation.
         is_static: Transforms hold at every time (they came on /tf_static).
+        is_depth: Images and intrinsics are a depth camera's (they came on its topics).
         max_pixels: A larger picture is refused before it is decoded.
 
     Returns:
@@ -45,11 +57,18 @@ def decode(
         ConfigError: Camera intrinsics make no sense.
     """
     message = types.deserialize(type_name, cdr)
-    return events_from_message(type_name, message, is_static=is_static, max_pixels=max_pixels)
+    return events_from_message(
+        type_name, message, is_static=is_static, is_depth=is_depth, max_pixels=max_pixels
+    )
 
 
 def events_from_message(
-    type_name: str, message: Any, *, is_static: bool = False, max_pixels: int = MAX_PIXELS
+    type_name: str,
+    message: Any,
+    *,
+    is_static: bool = False,
+    is_depth: bool = False,
+    max_pixels: int = MAX_PIXELS,
 ) -> list[Event]:
     """Read one message object, of rclpy or anything with the same field names.
 
@@ -57,7 +76,9 @@ def events_from_message(
     """
     if type_name in (types.TF_MESSAGE, types.TF_MESSAGE_ROS1):
         return list(transforms_from_message(message, is_static=is_static))
-    convert_image = _IMAGES.get(type_name)
+    if is_depth and type_name == types.CAMERA_INFO:
+        return [DepthCamera(camera_from_message(message))]
+    convert_image = (_DEPTHS if is_depth else _IMAGES).get(type_name)
     if convert_image is not None:
         return [convert_image(message, max_pixels)]
     convert = _SINGLE.get(type_name)
@@ -77,6 +98,13 @@ def image_from_message(message: Any, max_pixels: int = MAX_PIXELS) -> CameraImag
 def image_from_compressed(message: Any, max_pixels: int = MAX_PIXELS) -> CameraImage:
     """The picture of a sensor_msgs/CompressedImage."""
     return _camera_image(message, picture_from_compressed(message, max_pixels))
+
+
+def depth_from_message(message: Any, max_pixels: int = MAX_PIXELS) -> DepthImage:
+    """The depths of a sensor_msgs/Image or CompressedImage."""
+    is_packed = hasattr(message, "format")
+    read = (depth_from_compressed if is_packed else depth_from_image)(message, max_pixels)
+    return DepthImage(stamp_ns(message.header), message.header.frame_id, read)
 
 
 def scan_from_message(message: Any) -> Scan:
@@ -229,6 +257,7 @@ _IMAGES: dict[str, Callable[[Any, int], Event]] = {
     types.IMAGE: image_from_message,
     types.COMPRESSED_IMAGE: image_from_compressed,
 }
+_DEPTHS = dict.fromkeys((types.IMAGE, types.COMPRESSED_IMAGE), depth_from_message)
 _SINGLE: dict[str, Callable[[Any], Event]] = {
     types.LASER_SCAN: scan_from_message,
     types.CAMERA_INFO: camera_from_message,

@@ -10,10 +10,11 @@ import cv2
 import numpy as np
 
 from tracker.camera import CameraModel
-from tracker.containers import CameraImage, OccupancyGrid, Pose, Scan, Tracks, Truth
+from tracker.containers import CameraImage, DepthImage, OccupancyGrid, Pose, Scan, Tracks, Truth
 from tracker.errors import RecordingError
 from tracker.geometry import euler_to_quaternion
 from tracker.messages import types
+from tracker.messages.depth import depth_message_fields, packed_depth_fields
 from tracker.messages.types import Encoded, build, serialize
 from tracker.transforms import StampedTransform
 
@@ -42,6 +43,7 @@ class CameraInfo:
 
 Encodable: TypeAlias = (
     CameraImage
+    | DepthImage
     | Scan
     | StampedTransform
     | Iterable[StampedTransform]
@@ -61,6 +63,7 @@ def encode(item: Encodable, *, frame_id: str = "map", jpeg_quality: int | None =
     | container | message |
     | --- | --- |
     | CameraImage | sensor_msgs/Image (bgr8), or CompressedImage where `jpeg_quality` is given |
+    | DepthImage | sensor_msgs/Image (16UC1 or 32FC1), or CompressedImage likewise |
     | Scan | sensor_msgs/LaserScan |
     | StampedTransform, or several | tf2_msgs/TFMessage |
     | CameraInfo | sensor_msgs/CameraInfo |
@@ -74,7 +77,8 @@ def encode(item: Encodable, *, frame_id: str = "map", jpeg_quality: int | None =
     Args:
         item: The container.
         frame_id: The fixed frame of `Tracks` and `Truth`, which do not name it themselves.
-        jpeg_quality: From 1 to 100, to compress images.
+        jpeg_quality: From 1 to 100, to compress images; depth images go as PNG then, without a
+            loss (in meters: with the loss of `compressedDepth`).
 
     Raises:
         RecordingError: There is no message for such an item, or a stamp does not fit into one.
@@ -120,6 +124,8 @@ def _message(item: Encodable, frame_id: str, jpeg_quality: int | None) -> Any:
             return build(types.BOOL, data=bool(item))
         case CameraImage():
             return _image(item) if jpeg_quality is None else _compressed(item, jpeg_quality)
+        case DepthImage():
+            return _depth(item, is_packed=jpeg_quality is not None)
         case Scan():
             return _scan(item)
         case StampedTransform():
@@ -167,6 +173,13 @@ def _compressed(image: CameraImage, quality: int) -> Any:
         format="bgr8; jpeg compressed bgr8",  # the words of image_transport
         data=data.reshape(-1),
     )
+
+
+def _depth(image: DepthImage, *, is_packed: bool) -> Any:
+    stamp, pixels = header(image.stamp_ns, image.frame_id), image.read()
+    if is_packed:
+        return build(types.COMPRESSED_IMAGE, header=stamp, **packed_depth_fields(pixels))
+    return build(types.IMAGE, header=stamp, **depth_message_fields(pixels))
 
 
 def _scan(scan: Scan) -> Any:

@@ -62,7 +62,7 @@ def picture_from_image(message: Any, max_pixels: int = MAX_PIXELS) -> Picture:
             f"An image has the encoding {message.encoding!r}; known are {', '.join(ENCODINGS)}."
         )
     if isinstance(encoding, File):
-        return picture_from_file(_as_bytes(message.data), what, max_pixels)
+        return picture_from_file(as_bytes(message.data), what, max_pixels)
     check_pixels(PictureSize(int(message.width), int(message.height)), max_pixels, "An image")
     if isinstance(encoding, Planar):
         return Picture(_with_opencv(lambda: _bgr_of_planes(message, encoding), what))
@@ -90,7 +90,7 @@ def picture_from_compressed(message: Any, max_pixels: int = MAX_PIXELS) -> Pictu
         raise RecordingError(
             f"{what} is {kind}; needed are pictures of light, each by itself, as jpeg or png."
         )
-    return picture_from_file(_as_bytes(message.data), what, max_pixels)
+    return picture_from_file(as_bytes(message.data), what, max_pixels)
 
 
 def picture_from_file(data: NDArray[np.uint8], what: str, max_pixels: int = MAX_PIXELS) -> Picture:
@@ -154,10 +154,10 @@ def _packed_numbers(message: Any, encoding: Packed) -> Any:
     row_bytes = width * encoding.channels * encoding.bytes_each
     step = int(message.step) or row_bytes  # some drivers leave it zero
     least, most = step * (height - 1) + row_bytes, step * height
-    data = _as_bytes(message.data)
+    data = as_bytes(message.data)
     if height < 1 or width < 1 or step < row_bytes or not least <= len(data) <= most:
         raise _misfit(message, least, row_bytes)
-    rows = _filled(data, most).reshape(height, step)[:, :row_bytes]
+    rows = filled(data, most).reshape(height, step)[:, :row_bytes]
     if encoding.order and row_bytes % 4 == 0:
         rows = rows.reshape(height, -1, 4)[..., encoding.order]
     numbers = np.ascontiguousarray(rows)
@@ -184,7 +184,7 @@ def _bgr_of_planes(message: Any, encoding: Planar) -> ImageArray:
 
 def _planes(message: Any, encoding: Planar) -> tuple[Any, Any, Any]:
     """Brightness, shape (height, width); u and v, each with a number for those that share it."""
-    height, width, data = int(message.height), int(message.width), _as_bytes(message.data)
+    height, width, data = int(message.height), int(message.width), as_bytes(message.data)
     steps = {int(message.step), width}  # some drivers count the colors into the step
     for step in sorted(step for step in steps if step >= width > 0 and height > 0):
         shapes = list(_plane_shapes(encoding, height, width, step))
@@ -192,7 +192,7 @@ def _planes(message: Any, encoding: Planar) -> tuple[Any, Any, Any]:
         _, last_step, last_bytes = shapes[-1]
         if not size - (last_step - last_bytes) <= len(data) <= size:
             continue
-        data, planes = _filled(data, size), []
+        data, planes = filled(data, size), []
         for rows, row_step, row_bytes in shapes:
             planes.append(data[: rows * row_step].reshape(rows, row_step)[:, :row_bytes])
             data = data[rows * row_step :]
@@ -227,13 +227,14 @@ def _misfit(message: Any, least: int, row_bytes: int) -> RecordingError:
     )
 
 
-def _filled(data: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
-    """Some drivers leave the last row's padding away."""
+def filled(data: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
+    """Bytes of a picture, up to a size: some drivers leave the last row's padding away."""
     if len(data) == size:
         return data
     return np.concatenate([data, np.zeros(size - len(data), dtype=np.uint8)])
 
 
-def _as_bytes(data: Any) -> NDArray[np.uint8]:
+def as_bytes(data: Any) -> NDArray[np.uint8]:
+    """The data of a message, not copied."""
     # rosbags gives arrays, rclpy array('B'), others bytes: all of them lend their memory.
     return data if isinstance(data, np.ndarray) else np.frombuffer(data, dtype=np.uint8)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tracker.camera import CameraModel
@@ -18,6 +20,7 @@ from tracker.containers import (
 from tracker.geometry import RigidTransform, normalize_angle
 from tracker.ranging.background import Background
 from tracker.ranging.bias import bias_covariance
+from tracker.ranging.depth import HandDepths
 from tracker.ranging.hand_pairs import pair_hands
 from tracker.ranging.memory import Memory
 from tracker.ranging.people import PersonClusters, find_people
@@ -54,6 +57,7 @@ def measure_people(
     memory: Memory | None = None,
     tracked: Tracks | None = None,
     stamp_ns: int = 0,
+    depths: HandDepths | None = None,
 ) -> Measurements:
     """Turn one image's hands and the scan beside it into measurements in the fixed frame.
 
@@ -72,6 +76,8 @@ def measure_people(
             alone, and takes whatever is person-sized for a person.
         tracked: Everybody known at the last image; None means nobody.
         stamp_ns: The image's.
+        depths: What a depth camera says of hands' owners; it shows whose hand it is as well, so
+            that the scan is not asked for those it knows.
 
     Returns:
         First one row for each hand whose direction is known, then the clusters that no hand has
@@ -101,10 +107,17 @@ def measure_people(
         )  # fmt: skip
         claimed, side = owners.cluster, owners.side
         range_m, range_std_m = owners.range_m, owners.range_std_m
+    beside_m = BESIDE_M * side
+    if depths is not None:
+        range_m = np.where(depths.is_known, depths.range_m, range_m)
+        range_std_m = np.where(depths.is_known, depths.std_m, range_std_m)
+        claimed = np.where(depths.is_known, -1, claimed)
+        bearing_rad = np.where(depths.is_known, depths.bearing_rad, rays.bearing_rad)
+        rays = replace(rays, bearing_rad=bearing_rad)
+        beside_m = np.where(depths.is_known, 0.0, beside_m)
     seated = memory.postures.at(people.xy_m, config.same_person_distance_m)
     seen = claimed >= 0
     alone = np.flatnonzero(~seen & np.isfinite(rays.bearing_rad))
-    beside_m = BESIDE_M * side
     from_hands = _hand_measurements(
         alone, rays, beside_m, range_m, range_std_m, hands, pair, motion, config
     )

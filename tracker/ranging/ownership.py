@@ -174,7 +174,9 @@ class Ownership:
         covariance_m2, existence = tracked.covariance[row, :2, :2], tracked.existence[row]
         return _Hidden(row, xy_m[row], covariance_m2, np.log(existence)), ~has_been
 
-    def likeness(self, measurements: Measurements, people: int) -> FloatArray:
+    def likeness(
+        self, measurements: Measurements, people: int, is_seen: BoolArray | None = None
+    ) -> FloatArray:
         """What was judged, for the tracker's log-odds.
 
         Where a cluster is the owner's it is measured, and speaks for itself.
@@ -182,6 +184,7 @@ class Ownership:
         Args:
             measurements: M, of the hands judged last among others.
             people: N, the people tracked at the last image.
+            is_seen: Shape (H,): hands whose owner another sensor has measured; None means no hand.
 
         Returns:
             Shape (N, M).
@@ -191,7 +194,10 @@ class Ownership:
             return likeness
         column = np.flatnonzero(measurements.hand >= 0)
         hand = measurements.hand[column]
-        column, hand = (rows[self._owners.cluster[hand] < 0] for rows in (column, hand))
+        is_open = self._owners.cluster[hand] < 0
+        if is_seen is not None:
+            is_open &= ~is_seen[hand]
+        column, hand = column[is_open], hand[is_open]
         likeness[np.ix_(~self._owners.is_guess, column)] = -SURE
         is_known = self._owners.person[hand] >= 0
         likeness[self._owners.person[hand[is_known]], column[is_known]] = SURE

@@ -102,7 +102,9 @@ class VideoSource:
                 f"({stamp_ns / 1e9:.3f} s). What came before was read. {_VIDEO_REMEDY}"
             )
 
-    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+    def read(
+        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
+    ) -> list[Event]:
         """As `Source.read`."""
         return [message.data]
 
@@ -153,7 +155,9 @@ class PhotoSource:
             for number, path in enumerate(self._paths):
                 yield RawMessage(self._topic, "", number * self._period_ns, path)
 
-    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+    def read(
+        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
+    ) -> list[Event]:
         """As `Source.read`."""
         picture = _read_picture(message.data, max_pixels)
         return [CameraImage(message.log_ns, "", picture.bgr, picture.remark)]

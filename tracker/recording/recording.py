@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 
-from tracker.camera import CameraModel
+from tracker.camera import CameraModel, DepthCamera
 from tracker.closing import Closing
 from tracker.containers import CameraImage, Scan
 from tracker.errors import RecordingError, TrackerError
@@ -117,6 +117,11 @@ class Recording(Closing):
         return self._table.holds(self.read_topics.scan, types.LASER_SCAN)
 
     @property
+    def has_depth(self) -> bool:
+        """Depth images are on the depth topic."""
+        return self._table.holds(self.read_topics.depth, *IMAGES)
+
+    @property
     def has_camera_info(self) -> bool:
         """Intrinsics are on the camera_info topic."""
         return self._table.holds(self.read_topics.camera_info, types.CAMERA_INFO)
@@ -217,7 +222,12 @@ class Recording(Closing):
 
     def _read(self, message: RawMessage, *, is_static: bool = False) -> list[Event]:
         try:
-            events = self._source.read(message, is_static=is_static, max_pixels=self._max_pixels)
+            events = self._source.read(
+                message,
+                is_static=is_static,
+                max_pixels=self._max_pixels,
+                is_depth=self._is_of_depth(message.topic),
+            )
         except TrackerError as error:
             self._skip(message, str(error))
             return []
@@ -238,12 +248,18 @@ class Recording(Closing):
     def _used(self) -> set[str]:
         names = self.read_topics
         used = {names.image, names.scan, names.camera_info, names.tf, names.tf_static, names.map}
+        used |= {names.depth, names.depth_camera_info}
         used |= {names.truth} if self._with_truth else set()
         return {name for name in used if self._table.holds(name, *DECODABLE, *_PICTURES)}
 
+    def _is_of_depth(self, topic: str) -> bool:
+        names = self.read_topics
+        return topic in (names.depth, names.depth_camera_info) and topic != names.image
+
     def _find_topics(self, asked: Topics) -> Topics:
         found = self._table.find(asked)
-        for name in ("image", "scan", "camera_info", "tf", "tf_static", "map"):
+        asked_for = ("image", "scan", "camera_info", "tf", "tf_static", "map", "depth")
+        for name in asked_for:
             before, after = getattr(asked, name), getattr(found, name)
             if before != after:
                 self.notes.append(
@@ -280,8 +296,10 @@ class Recording(Closing):
 
 
 def _is_in_time(event: Event) -> bool:
-    return isinstance(event, CameraModel) or event.stamp_ns < _TOO_LATE_NS
+    return isinstance(event, CameraModel | DepthCamera) or event.stamp_ns < _TOO_LATE_NS
 
 
 def _restamped(event: Event, stamp_ns: int) -> Event:
-    return event if isinstance(event, CameraModel) else replace(event, stamp_ns=stamp_ns)
+    if isinstance(event, CameraModel | DepthCamera):
+        return event
+    return replace(event, stamp_ns=stamp_ns)

@@ -68,7 +68,9 @@ class Ros1Source:
         counted = {topic: info.count for topic, info in self.topics.items() if topic in topics}
         damage.tell(self._path, self.start_ns, counted, read)
 
-    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+    def read(
+        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
+    ) -> list[Event]:
         """As `Source.read`."""
         try:
             said = _typestore().deserialize_ros1(message.data, message.type_name)
@@ -78,7 +80,7 @@ class Ros1Source:
                 f"one ({error})."
             ) from error
         return events_from_message(
-            message.type_name, said, is_static=is_static, max_pixels=max_pixels
+            message.type_name, said, is_static=is_static, max_pixels=max_pixels, is_depth=is_depth
         )
 
     def close(self) -> None:

@@ -60,7 +60,9 @@ class Source(Protocol):
             RecordingError: The file is damaged; everything that can be read has been yielded.
         """
 
-    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+    def read(
+        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
+    ) -> list[Event]:
         """What one message says; pictures of up to `max_pixels`.
 
         Raises:
@@ -108,9 +110,13 @@ class Row:
             more = f" ... and {len(errors) - 1} more of its files" if errors[1:] else ""
             raise RecordingError(errors[0] + more)
 
-    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+    def read(
+        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
+    ) -> list[Event]:
         """As `Source.read`; the parts are of one kind."""
-        return self._parts[0].read(message, is_static=is_static, max_pixels=max_pixels)
+        return self._parts[0].read(
+            message, is_static=is_static, max_pixels=max_pixels, is_depth=is_depth
+        )
 
     def close(self) -> None:
         """As `Source.close`."""
@@ -142,9 +148,13 @@ class WrappedSource:
         except RecordingError as error:
             raise RecordingError(str(error).replace(self._place, self._name)) from error
 
-    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+    def read(
+        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
+    ) -> list[Event]:
         """As `Source.read`."""
-        return self._source.read(message, is_static=is_static, max_pixels=max_pixels)
+        return self._source.read(
+            message, is_static=is_static, max_pixels=max_pixels, is_depth=is_depth
+        )
 
     def close(self) -> None:
         """As `Source.close`."""

@@ -78,9 +78,17 @@ class SqliteSource:
         counted = {topic: info.count for topic, info in self.topics.items() if topic in topics}
         damage.tell(self._path, self.start_ns, counted, read)
 
-    def read(self, message: RawMessage, *, is_static: bool, max_pixels: int) -> list[Event]:
+    def read(
+        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
+    ) -> list[Event]:
         """As `Source.read`."""
-        return decode(message.type_name, message.data, is_static=is_static, max_pixels=max_pixels)
+        return decode(
+            message.type_name,
+            message.data,
+            is_static=is_static,
+            max_pixels=max_pixels,
+            is_depth=is_depth,
+        )
 
     def close(self) -> None:
         """As `Source.close`."""

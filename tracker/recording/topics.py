@@ -32,6 +32,8 @@ class Topics:
         tf_static: Lasting transforms; likewise.
         map: The map of the room; where it is missing and there is one other `map`, that one.
         truth: Simulated people.
+        depth: Depth images; `<depth>/compressedDepth` is taken where the topic itself is missing.
+        depth_camera_info: Their intrinsics; where it is missing, the `camera_info` beside them.
     """
 
     image: str = "/image_raw"
@@ -41,6 +43,8 @@ class Topics:
     tf_static: str = "/tf_static"
     map: str = "/map"
     truth: str = "/truth/people"
+    depth: str = "/depth"
+    depth_camera_info: str = "/depth_camera_info"
 
 
 class TopicTable:
@@ -67,11 +71,15 @@ class TopicTable:
         names = {item.name: self._spelled(getattr(asked, item.name)) for item in fields(asked)}
         asked = Topics(**names)
         found = replace(
-            asked, image=self._find_image(asked.image), scan=self._find_scan(asked.scan)
+            asked,
+            image=self._find_image(asked.image),
+            scan=self._find_scan(asked.scan),
+            depth=self._find_depth(asked.depth),
         )
+        found = replace(found, camera_info=self._find_camera_info(found.image, asked.camera_info))
         return replace(
             found,
-            camera_info=self._find_camera_info(found.image, asked.camera_info),
+            depth_camera_info=self._find_depth_camera_info(found, asked.depth_camera_info),
             tf=self._find_transforms(asked.tf, found),
             tf_static=self._find_transforms(asked.tf_static, found),
             map=self._find_map(asked.map),
@@ -124,6 +132,16 @@ class TopicTable:
     def _find_image(self, asked: str) -> str:
         packed = f"{asked}/compressed"
         return packed if asked not in self._topics and self.holds(packed, *IMAGES) else asked
+
+    def _find_depth(self, asked: str) -> str:
+        packed = f"{asked}/compressedDepth"
+        is_packed = asked not in self._topics and self.holds(packed, types.COMPRESSED_IMAGE)
+        return packed if is_packed else asked
+
+    def _find_depth_camera_info(self, found: Topics, asked: str) -> str:
+        beside = self._find_camera_info(found.depth.removesuffix("/compressedDepth"), asked)
+        # The color camera's own says nothing new of a depth image beside the color image.
+        return asked if beside == found.camera_info else beside
 
     def _find_scan(self, asked: str) -> str:
         scans = self.of_type(types.LASER_SCAN)

@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 import yaml
 from mcap.writer import CompressionType, Writer
 
-from tracker.containers import CameraImage
+from tracker.containers import CameraImage, DepthImage
 from tracker.errors import RecordingError
 from tracker.messages import Encodable, Encoded, definition, encode, type_hash
 from tracker.outputs import GrowingFile, GrowingOutput, unwritable, writing_into
@@ -30,7 +30,7 @@ class RecordingWriter(GrowingOutput):
         path: A file that ends in `.mcap`, or else the folder of a rosbag2 recording.
         fixed_frame: The frame of `Tracks` and `Truth`.
         jpeg_quality: From 1 to 100: images go as CompressedImage onto `<topic>/compressed`, as
-            image_transport has it.
+            image_transport has it, and depth images as PNG onto `<topic>/compressedDepth`.
         overwrite: Replace what is there.
 
     Raises:
@@ -81,6 +81,8 @@ class RecordingWriter(GrowingOutput):
             raise RecordingError(f"{self.path}: a log time of {log_ns} ns came; it begins at 0.")
         if self._jpeg_quality is not None and isinstance(item, CameraImage):
             topic = f"{topic.removesuffix('/compressed')}/compressed"
+        if self._jpeg_quality is not None and isinstance(item, DepthImage):
+            topic = f"{topic}/compressedDepth"
         message = encode(item, frame_id=self._fixed_frame, jpeg_quality=self._jpeg_quality)
         log_ns = int(log_ns)
         try:

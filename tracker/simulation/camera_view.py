@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -51,7 +52,7 @@ class CameraView:
         self._tables = [TablePainter(table, scene.camera.exposure) for table in scene.tables]
         self._chairs = [ChairPainter(chair, scene.camera.exposure) for chair in scene.chairs]
         self._looks = [look_of(person) for person in scene.people]
-        self._figures: dict[tuple[Look, bool, str], list[_Pyramid]] = {}
+        self._figures: dict[tuple[Look, bool, str], list[Pyramid]] = {}
         self._rng = rng
         camera = scene.camera
         # Fresh noise for each pixel of each picture takes longer than all the painting; a window
@@ -97,6 +98,13 @@ class CameraView:
             if chair.back_xy_m is not None:
                 ahead_m = float(view.forward_left(chair.back_xy_m)[0])
                 things.append((ahead_m, partial(chair.paint_back, frame, view)))
+        for figure in self.figures(view, people):
+            paint = partial(figure.pyramid.lay_over, frame, figure.anchor_px, figure.px_per_m)
+            things.append((figure.ahead_m, paint))
+        return things
+
+    def figures(self, view: Viewpoint, people: People) -> Iterator[ShownFigure]:
+        """Everybody in front of a camera, as they are shown."""
         for row, look in enumerate(self._looks):
             ahead_left = view.forward_left(people.xy_m[row])
             if ahead_left[0] < max(NEAR_M, 0.3):
@@ -106,13 +114,15 @@ class CameraView:
             step = _step_of(float(people.raised[row]), float(people.swing[row]))
             what, number = doing or ("", step)
             anchor = view.pixels(ahead_left, 0.0)
-            figure = self._figure(look, behind, what)[number]
-            px_per_m = view.camera.fx / ahead_left[0]
-            paint = partial(figure.lay_over, frame, (anchor[0], anchor[1]), px_per_m)
-            things.append((float(ahead_left[0]), paint))
-        return things
+            yield ShownFigure(
+                row,
+                float(ahead_left[0]),
+                self._figure(look, behind, what)[number],
+                (float(anchor[0]), float(anchor[1])),
+                float(view.camera.fx / ahead_left[0]),
+            )
 
-    def _figure(self, look: Look, from_behind: bool, what: str) -> list[_Pyramid]:
+    def _figure(self, look: Look, from_behind: bool, what: str) -> list[Pyramid]:
         key = (look, from_behind, what)
         if key not in self._figures:
             sprites = (
@@ -123,7 +133,7 @@ class CameraView:
                 )
             )
             exposure = self._scene.camera.exposure
-            self._figures[key] = [_Pyramid(_exposed(sprite, exposure)) for sprite in sprites]
+            self._figures[key] = [Pyramid(_exposed(sprite, exposure)) for sprite in sprites]
         return self._figures[key]
 
     def _steps(self, look: Look) -> tuple[tuple[float, float], ...]:
@@ -199,7 +209,7 @@ def _exposed(sprite: Sprite, exposure: float) -> Sprite:
     return replace(sprite, bgra=bgra)
 
 
-class _Pyramid:
+class Pyramid:
     """A sprite at halved resolutions, so that any smaller size is one cheap warp away."""
 
     def __init__(self, sprite: Sprite) -> None:
@@ -214,6 +224,25 @@ class _Pyramid:
 
     def lay_over(self, frame: ImageArray, anchor_px: tuple[float, float], px_per_m: float) -> None:
         """Composite it, its anchor at a place of the frame."""
+        placed = self.placed(frame.shape[:2], anchor_px, px_per_m)
+        if placed is None:
+            return
+        window, bgra = placed
+        under = frame[window]
+        clear = cv2.cvtColor(255 - bgra[..., 3], cv2.COLOR_GRAY2BGR)
+        behind = cv2.multiply(under, clear, scale=1 / 255)
+        under[:] = cv2.add(behind, bgra[..., :3])
+
+    def placed(
+        self, size: tuple[int, int], anchor_px: tuple[float, float], px_per_m: float
+    ) -> tuple[tuple[slice, slice], ImageArray] | None:
+        """The part of a frame that it covers, and what it shows there; None for none.
+
+        Args:
+            size: Rows and columns of the frame.
+            anchor_px: Column and row of its anchor.
+            px_per_m: How large it is shown.
+        """
         level = max(
             (item for item in self._levels if item.px_per_m >= px_per_m),
             key=lambda item: -item.px_per_m,
@@ -223,10 +252,10 @@ class _Pyramid:
         left = anchor_px[0] - level.anchor_px[0] * scale
         top = anchor_px[1] - level.anchor_px[1] * scale
         height, width = level.bgra.shape[0] * scale, level.bgra.shape[1] * scale
-        first_row, last_row = max(int(top), 0), min(int(top + height) + 2, frame.shape[0])
-        first, last = max(int(left), 0), min(int(left + width) + 2, frame.shape[1])
+        first_row, last_row = max(int(top), 0), min(int(top + height) + 2, size[0])
+        first, last = max(int(left), 0), min(int(left + width) + 2, size[1])
         if last_row <= first_row or last <= first:
-            return
+            return None
         # Pixel centers: the sprite's pixel (i + 0.5) * scale lands on the frame's.
         shift = 0.5 * scale - 0.5
         placed = cv2.warpAffine(
@@ -236,7 +265,22 @@ class _Pyramid:
             flags=cv2.INTER_LINEAR,
             borderValue=(0, 0, 0, 0),
         )
-        under = frame[first_row:last_row, first:last]
-        clear = cv2.cvtColor(255 - placed[..., 3], cv2.COLOR_GRAY2BGR)
-        behind = cv2.multiply(under, clear, scale=1 / 255)
-        under[:] = cv2.add(behind, placed[..., :3])
+        return (slice(first_row, last_row), slice(first, last)), np.asarray(placed)
+
+
+class ShownFigure(NamedTuple):
+    """A person as a camera shows them.
+
+    Attributes:
+        row: Which of the scene's people.
+        ahead_m: Distance ahead of the camera.
+        pyramid: What is laid over the picture.
+        anchor_px: Column and row of the point between the feet.
+        px_per_m: How large it is shown.
+    """
+
+    row: int
+    ahead_m: float
+    pyramid: Pyramid
+    anchor_px: tuple[float, float]
+    px_per_m: float

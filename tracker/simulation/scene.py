@@ -174,6 +174,28 @@ class Laser(Part):
     dropout: float = Field(0.01, ge=0.0, lt=1.0, description="Share of beams without a return.")
 
 
+class Depth(Part):
+    """A depth camera, of stereo kind, beside the color camera.
+
+    Registered pictures show what the color camera shows, pixel by pixel, in its frame. Others have
+    intrinsics, a place and a frame (`camera_depth_optical_frame`) of their own.
+    """
+
+    registered: bool = True
+    unit: Literal["mm", "m"] = Field("mm", description="16UC1 in mm, or 32FC1 in m.")
+    y_m: float = Field(0.059, description="To the left of the color camera, if not registered.")
+    width: int = Field(848, ge=16, le=4096)
+    height: int = Field(480, ge=16, le=4096)
+    f_px: float = Field(424.0, gt=0.0, description="Focal length; registered: the color camera's.")
+    rate_hz: float = Field(15.0, gt=0.0, le=240.0)
+    range_min_m: float = Field(0.3, ge=0.0)
+    range_max_m: float = Field(10.0, gt=0.0)
+    baseline_m: float = Field(0.05, gt=0.0)
+    disparity_std_px: float = Field(0.08, ge=0.0, description="Its noise.")
+    disparity_step_px: float = Field(0.0625, gt=0.0, description="No finer is it told.")
+    holes: float = Field(0.03, ge=0.0, lt=1.0, description="Share without a reading.")
+
+
 class Scene(Part):
     """One simulated recording."""
 
@@ -184,6 +206,7 @@ class Scene(Part):
     robot: Robot = Field(default_factory=Robot)
     camera: Camera = Field(default_factory=Camera)
     laser: Laser = Field(default_factory=Laser)
+    depth: Depth | None = None
     floor: Color = "#9c8b78"
     backlight: float = Field(1.0, gt=0.0, le=16.0, description="Brightness of what is behind.")
     walls: Annotated[tuple[Wall, ...], Field(strict=False)] = ()
@@ -238,6 +261,11 @@ def scene_from_mapping(document: Any, origin: str = "scene") -> Scene:
         raise SceneError(f"{origin}: {reasons}.") from error
 
 
+def with_depth_camera(scene: Scene) -> Scene:
+    """The same scene with a depth camera, registered to the color camera unless it has its own."""
+    return scene if scene.depth is not None else scene.model_copy(update={"depth": Depth()})
+
+
 def scene_names() -> list[str]:
     """The scenes that come with the project."""
     return sorted({path.stem for folder in _folders() for path in folder.glob("*.yaml")})
@@ -286,7 +314,7 @@ def _reason(item: Any) -> str:
 
 
 def _suggestion(name: str) -> str:
-    things = (Scene, Robot, Camera, Laser, Wall, Poster, Table, Chair)
+    things = (Scene, Robot, Camera, Laser, Depth, Wall, Poster, Table, Chair)
     people = (Person, PersonLook, DrivePoint, WayPoint, Raise, Activity)
     known = {key for part in (*things, *people) for key in part.model_fields}
     close = get_close_matches(name, known, n=1)

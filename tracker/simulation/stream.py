@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from tracker.camera import CameraModel
-from tracker.containers import CameraImage, OccupancyGrid, Scan, Truth
+from tracker.camera import CameraModel, DepthCamera
+from tracker.containers import CameraImage, DepthImage, OccupancyGrid, Scan, Truth
 from tracker.errors import SceneError
 from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.messages import CameraInfo, Encodable, Event
 from tracker.recording import RecordingWriter
 from tracker.simulation.camera_view import CameraView, hands_in_view
+from tracker.simulation.depth_view import DepthView, depth_camera
 from tracker.simulation.floor_map import floor_map
 from tracker.simulation.lidar import ScanSimulator
 from tracker.simulation.motion import people_at, planar_transform, robot_pose
@@ -26,6 +27,9 @@ TRANSFORM_RATE_HZ = 50.0
 
 # From measuring to recording; guesses at an ordinary robot.
 _IMAGE_DELAY_NS, _SCAN_DELAY_NS, _TRANSFORM_DELAY_NS = 20_000_000, 5_000_000, 2_000_000
+_DEPTH_DELAY_NS = 18_000_000
+
+DEPTH_FRAME = "camera_depth_optical_frame"
 
 _BODY_FROM_OPTICAL = euler_to_quaternion(-np.pi / 2, 0.0, -np.pi / 2)
 
@@ -34,7 +38,8 @@ def simulate(scene: Scene, seed: int) -> Iterator[tuple[int, Event]]:
     """Play a scene as its sensors would report it.
 
     Frames: map -> odom (fixed) -> base_link (moving) -> camera_link and the laser's (fixed), and
-    camera_link -> camera_optical_frame where the scene's camera speaks of that. The truth is given
+    camera_link -> camera_optical_frame where the scene's camera speaks of that, and likewise for a
+    depth camera that is not registered. The truth is given
     in the map at each image's stamp.
 
     Args:
@@ -50,14 +55,16 @@ def simulate(scene: Scene, seed: int) -> Iterator[tuple[int, Event]]:
     """
     if seed < 0:
         raise SceneError(f"The seed is {seed}; needed is a whole number from 0 on.")
-    camera_rng, scan_rng = (np.random.default_rng([seed, sensor]) for sensor in (0, 1))
+    camera_rng, scan_rng, depth_rng = (np.random.default_rng([seed, row]) for row in range(3))
+    painter = CameraView(scene, camera_rng)
     start_ns = scene.start_s * 1_000_000_000
     at_once: list[Event] = [*_static_transforms(scene), floor_map(scene)]
     yield from merge(
         ((start_ns, event) for event in at_once),
         _moving_transforms(scene),
         _scans(scene, scan_rng),
-        _images(scene, camera_rng),
+        _images(scene, painter),
+        _depths(scene, painter, depth_rng),
         key=lambda item: item[0],
     )
 
@@ -73,14 +80,16 @@ def write_simulation(
 ) -> None:
     """Write a scene as a recording.
 
-    Topics: /image_raw, /camera_info, /scan, /map, /tf, /tf_static and /truth/people.
+    Topics: /image_raw, /camera_info, /scan, /map, /tf, /tf_static and /truth/people; /depth where
+    the scene has a depth camera, and /depth_camera_info where that is not registered.
 
     Args:
         scene: What happens.
         path: Of the new recording.
         seed: Of all noise; the same seed gives the same bytes.
         progress: Told the share of the scene that is done, from 0 to 1, about once an image.
-        jpeg_quality: From 1 to 100: images as JPEG on /image_raw/compressed, a twentieth the size.
+        jpeg_quality: From 1 to 100: images as JPEG on /image_raw/compressed, a twentieth the size;
+            and depth images as PNG on /depth/compressedDepth.
         overwrite: Replace a recording that is there.
 
     Raises:
@@ -98,6 +107,9 @@ def write_simulation(
             if isinstance(event, CameraModel):
                 stamp_ns = log_ns - _IMAGE_DELAY_NS
                 item = CameraInfo(stamp_ns, camera.frame, camera.width, camera.height, event)
+            elif isinstance(event, DepthCamera):
+                own, stamp_ns = event.camera, log_ns - _DEPTH_DELAY_NS
+                item = CameraInfo(stamp_ns, DEPTH_FRAME, own.width or 0, own.height or 0, own)
             else:
                 item = event
             writer.write(topic_of(event), log_ns, item)
@@ -116,6 +128,8 @@ def topic_of(event: Event) -> str:
         CameraModel: "/camera_info",
         Scan: "/scan",
         OccupancyGrid: "/map",
+        DepthImage: "/depth",
+        DepthCamera: "/depth_camera_info",
         Truth: "/truth/people",
     }
     return topics[type(event)]
@@ -131,12 +145,11 @@ def map_from_laser(scene: Scene, time_s: float) -> RigidTransform:
     return robot_pose(scene, time_s) @ _base_from_laser(scene)
 
 
-def _images(scene: Scene, rng: np.random.Generator) -> Iterator[tuple[int, Event]]:
+def _images(scene: Scene, painter: CameraView) -> Iterator[tuple[int, Event]]:
     camera = scene.camera
     model = CameraModel(
         camera.fx, camera.fy, camera.cx, camera.cy, width=camera.width, height=camera.height
     )
-    painter = CameraView(scene, rng)
     for stamp_ns, time_s in _ticks(scene, camera.rate_hz, scene.duration_s):
         people = people_at(scene, time_s)
         view = Viewpoint.of(camera, map_from_camera(scene, time_s))
@@ -145,6 +158,25 @@ def _images(scene: Scene, rng: np.random.Generator) -> Iterator[tuple[int, Event
         yield log_ns, model
         yield log_ns, CameraImage(stamp_ns, camera.frame, painter.render(view, people))
         yield log_ns, Truth(stamp_ns, people.id, people.xy_m, people.hand_up, in_view)
+
+
+def _depths(
+    scene: Scene, painter: CameraView, rng: np.random.Generator
+) -> Iterator[tuple[int, Event]]:
+    depth = scene.depth
+    if depth is None:
+        return
+    view = DepthView(scene, painter, rng)
+    own = depth_camera(scene, depth)
+    frame = scene.camera.frame if depth.registered else DEPTH_FRAME
+    for stamp_ns, time_s in _ticks(scene, depth.rate_hz, scene.duration_s):
+        place = map_from_camera(scene, time_s)
+        if not depth.registered:
+            place = place @ RigidTransform((0.0, depth.y_m, 0.0))
+            model = CameraModel(own.fx, own.fy, own.cx, own.cy, width=own.width, height=own.height)
+            yield stamp_ns + _DEPTH_DELAY_NS, DepthCamera(model)
+        pixels = view.render(Viewpoint.of(own, place), people_at(scene, time_s))
+        yield stamp_ns + _DEPTH_DELAY_NS, DepthImage.of(stamp_ns, frame, pixels)
 
 
 def _scans(scene: Scene, rng: np.random.Generator) -> Iterator[tuple[int, Event]]:
@@ -175,6 +207,9 @@ def _static_transforms(scene: Scene) -> list[StampedTransform]:
     if scene.camera.frame != "camera_link":
         optical = RigidTransform(quaternion_xyzw=_BODY_FROM_OPTICAL)
         links.append(("camera_link", scene.camera.frame, optical))
+    if scene.depth is not None and not scene.depth.registered:
+        optical = RigidTransform((0.0, scene.depth.y_m, 0.0), _BODY_FROM_OPTICAL)
+        links.append(("camera_link", DEPTH_FRAME, optical))
     return [StampedTransform(start_ns, *link, is_static=True) for link in links]
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from tracker.containers import Scan
+from tracker.containers import DepthImage, Scan
 from tracker.errors import ClockError
 from tracker.transforms import StampedTransform, TransformBuffer, Transforms
 from tracker.waiting.image_queue import ImageQueue
@@ -15,6 +15,8 @@ from tracker.waiting.stamp_watch import StampWatch, Step
 
 #: Scans remembered; older ones give way.
 _SCANS_KEPT = 40
+#: Depth images remembered: two thirds of a second at 30 Hz, longer than images wait.
+_DEPTHS_KEPT = 20
 #: Transforms of one frame come in any order within the first. A step ahead beyond the second,
 #: which is less than buffers remember, would outdate all others.
 _TRANSFORM_LATE_NS, _TRANSFORM_AHEAD_NS = 1_000_000_000, 8_000_000_000
@@ -38,12 +40,17 @@ class WaitingRoom:
         self.images = ImageQueue(rate_hz)
         self.transforms: Transforms = transforms or TransformBuffer()
         self._scans: deque[Scan] = deque(maxlen=_SCANS_KEPT)
+        self._depths: deque[DepthImage] = deque(maxlen=_DEPTHS_KEPT)
         self._watches: dict[str, StampWatch] = {}
         self._transforms_until_ns: int | None = None
 
     def add_scan(self, scan: Scan) -> None:
         """Take in one scan."""
         self._scans.append(scan)
+
+    def add_depth(self, image: DepthImage) -> None:
+        """Take in one depth image."""
+        self._depths.append(image)
 
     def add_transform(self, sample: StampedTransform) -> None:
         """Take in one transform; where its clock has jumped back, those of before go.
@@ -61,17 +68,23 @@ class WaitingRoom:
         """The scans that wait, the nearest to a stamp first."""
         return sorted(self._scans, key=lambda scan: abs(scan.stamp_ns - stamp_ns))
 
+    def depths_by_age(self, stamp_ns: int) -> list[DepthImage]:
+        """The depth images that wait, the nearest to a stamp first."""
+        return sorted(self._depths, key=lambda image: abs(image.stamp_ns - stamp_ns))
+
     def forget_scans_after(self, stamp_ns: int) -> None:
-        """Drop scans later than a stamp: left over from before the clock jumped back."""
-        earlier = [scan for scan in self._scans if scan.stamp_ns <= stamp_ns]
-        self._scans.clear()
-        self._scans.extend(earlier)
+        """Drop what is later than a stamp: left over from before the clock jumped back."""
+        for kept in (self._scans, self._depths):
+            earlier = [each for each in kept if each.stamp_ns <= stamp_ns]
+            kept.clear()
+            kept.extend(earlier)  # type: ignore[arg-type]  # of the same kind
 
     def reset(self) -> None:
         """Forget everything but static transforms."""
         self.images.reset()
         self.transforms.clear()
         self._scans.clear()
+        self._depths.clear()
         self._watches.clear()
         self._transforms_until_ns = None
 

@@ -1,12 +1,16 @@
 import numpy as np
 import pytest
 
+from tracker.camera import CameraModel, DepthCamera
+from tracker.containers import CameraImage, DepthImage
 from tracker.errors import RecordingError
+from tracker.messages import CameraInfo
 from tracker.recording import RecordingWriter, Topics, open_recording
 from tracker.recording.sources import TopicInfo
 from tracker.recording.topics import TopicTable
 
 IMAGE, SCAN, TF = "sensor_msgs/msg/Image", "sensor_msgs/msg/LaserScan", "tf2_msgs/msg/TFMessage"
+INFO, PACKED = "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/CompressedImage"
 CLOUD, ECHOES = "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/MultiEchoLaserScan"
 
 
@@ -106,3 +110,36 @@ def test_a_topic_is_found_without_its_slash():
     there = table(eye__image=IMAGE, eye__scan=SCAN, laser__scan=SCAN)
     found = there.find(Topics(image="eye/image", scan="laser/scan"))
     assert (found.image, found.scan) == ("/eye/image", "/laser/scan")
+
+
+def test_packed_depth_and_the_intrinsics_beside_it_are_found():
+    there = table(camera__depth__image__compressedDepth=PACKED, camera__depth__camera_info=INFO)
+    found = there.find(Topics(depth="/camera/depth/image"))
+    assert found.depth == "/camera/depth/image/compressedDepth"
+    assert found.depth_camera_info == "/camera/depth/camera_info"
+
+
+def test_the_color_camera_s_intrinsics_are_not_taken_for_a_depth_camera_s():
+    there = table(image_raw=IMAGE, depth=IMAGE, camera_info=INFO)
+    found = there.find(Topics())
+    assert found.camera_info == "/camera_info"
+    assert found.depth_camera_info == "/depth_camera_info"
+
+
+@pytest.mark.parametrize("jpeg_quality", [None, 90], ids=["plain", "packed"])
+@pytest.mark.parametrize("name", ["drive.mcap", "drive"], ids=["file", "folder"])
+def test_depth_and_its_intrinsics_are_read_as_they_were_written(tmp_path, name, jpeg_quality):
+    camera = CameraModel(400.0, 400.0, 32.0, 24.0, width=64, height=48)
+    pixels = np.full((48, 64), 2345, np.uint16)
+    with RecordingWriter(tmp_path / name, jpeg_quality=jpeg_quality) as writer:
+        writer.write("/depth_camera_info", 1, CameraInfo(1, "eye", 64, 48, camera))
+        writer.write("/depth", 2, DepthImage.of(2, "eye", pixels))
+        writer.write("/image_raw", 3, CameraImage(3, "", np.zeros((48, 64, 3), np.uint8)))
+    with open_recording(tmp_path / name) as recording:
+        assert recording.has_depth
+        info, depth, image = [event for _, event in recording.events()]
+    assert isinstance(info, DepthCamera)
+    assert info.camera.fx == 400.0
+    assert (depth.stamp_ns, depth.frame_id) == (2, "eye")
+    np.testing.assert_array_equal(depth.read(), pixels)
+    assert isinstance(image, CameraImage)
