@@ -19,7 +19,12 @@ setup(
     packages=[*find_packages(include=["tracker*", "nodes*"]), "tracker.scenes"],
     package_dir={"tracker.scenes": "config/scenes"},
     package_data={
-        "tracker": ["py.typed", "report/page.html", "dashboard/page/*"],
+        "tracker": [
+            "py.typed",
+            "report/page.html",
+            "dashboard/page/*",
+            "perception/gestures/signs.npz",
+        ],
         "tracker.scenes": ["*.yaml"],
     },
     extras_require={

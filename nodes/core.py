@@ -29,12 +29,13 @@ from nodes.outputs import (
 from nodes.topics import Input, Output, input_topics
 from nodes.work_budget import WorkBudget
 from tracker.config import NODE_NAME, Config
-from tracker.containers import CameraImage, FrameResult, Scan
+from tracker.containers import CameraImage, FrameResult, Scan, Tracks
 from tracker.errors import TrackerError
-from tracker.messages import Encoded, decode
+from tracker.messages import Encoded, decode, encode
 from tracker.messages.types import deserialize
 from tracker.notes import NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.gestures.customers import GestureNews
 from tracker.pipeline import Pipeline
 from tracker.service import Answer, Command, Verb
 from tracker.transforms import Transforms
@@ -105,6 +106,7 @@ class NodeCore:
         self._pipeline = Pipeline(config, detector, transforms, image_topic=names[Input.IMAGES])
         self._inbox = Inbox()
         self._images = self._pipeline.room.images
+        self._gestures = GestureNews()
         self._diagnostics = Diagnostics(steady_ns, names)
         self._faults = FaultLog(lambda text: log("warning", text), steady_ns)
         self._remarks = FaultLog(lambda text: log("info", text), steady_ns)
@@ -354,6 +356,7 @@ class NodeCore:
         publish_answer(result, self._publish)
         if result.sensor_pose is not None:
             self._calls.show(result.sensor_pose[:2])
+        self._tell_gestures(result.tracks)
         latency_s = (self._now_ns() - result.stamp_ns) / 1e9
         busy_s = (self._steady_ns() - began_ns) / 1e9
         self._busy_s += (busy_s - self._busy_s) / _BUSY_IMAGES
@@ -402,6 +405,11 @@ class NodeCore:
         self._last = None
         publish_nobody(stamp_ns, self._shown_in, self._publish, self._has_subscribers)
         self._calls.show()
+        self._tell_gestures(Tracks.none(stamp_ns))
+
+    def _tell_gestures(self, tracks: Tracks) -> None:
+        for news in self._gestures.after(tracks):
+            self._publish(Output.GESTURE, encode(news))
 
     def _image_of(self, message: Encoded) -> CameraImage:
         (image,) = decode(*message, max_pixels=self._config.picture_max_pixels)

@@ -220,8 +220,8 @@ def command(
     Listens to image_raw (sensor_msgs/Image; CompressedImage with -p image_transport:=compressed),
     scan, depth (compressedDepth with -p depth_transport:=compressed), camera_info,
     depth_camera_info, map, /tf and /tf_static. Publishes hand_raised, customer_pose,
-    hand_detection_debug, ~/tracks, ~/markers, ~/approach_pose, ~/raised_hands, ~/waiting_list
-    and /diagnostics; follows ~/command with an ~/answer; answers
+    hand_detection_debug, ~/tracks, ~/markers, ~/gesture, ~/approach_pose, ~/raised_hands,
+    ~/waiting_list and /diagnostics; follows ~/command with an ~/answer; answers
     ~/release_customer, ~/enable, ~/reset and ROS 2's parameter services.
 
     Other nodes, with ROS or without, are met as ROS 2 does: by ROS_DOMAIN_ID,

@@ -81,6 +81,9 @@ PROFILES: dict[Input | Output, Profile] = {
     Output.MARKERS: Profile(
         True, False, 5, "RViz asks for reliable ones.",
     ),
+    Output.GESTURE: Profile(
+        True, False, 10, "Told when it changes, so that none may be missed; a few come at once.",
+    ),
     Output.DEBUG_IMAGE: Profile(
         True, False, 1, "For people; reliable, since viewers ask for that by default.",
     ),

@@ -37,6 +37,7 @@ class Output(str, Enum):
     ANSWERS = "~/answer"
     TRACKS = "~/tracks"
     MARKERS = "~/markers"
+    GESTURE = "~/gesture"
     DEBUG_IMAGE = "hand_detection_debug"
     DIAGNOSTICS = "/diagnostics"
 
@@ -92,6 +93,7 @@ OUTPUT_TYPES = {
     Output.ANSWERS: types.STRING,
     Output.TRACKS: types.DETECTIONS,
     Output.MARKERS: types.MARKER_ARRAY,
+    Output.GESTURE: types.STRING,
     Output.DEBUG_IMAGE: types.IMAGE,
     Output.DIAGNOSTICS: DIAGNOSTICS_TYPE,
 }

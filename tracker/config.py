@@ -16,6 +16,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from tracker.errors import ConfigError
+from tracker.gesture import Gesture, gestures_named
 from tracker.parameter_file import NODE_NAME as NODE_NAME  # where it is looked for
 from tracker.parameter_file import is_ours, read_parameters
 from tracker.retired_parameters import (
@@ -224,7 +225,8 @@ class Config(BaseModel):
     )  # fmt: skip
     search_lean_max_deg: float = _parameter(
         75.0, "Hands that lean farther to a side are neither read nor followed; 180 follows "
-        "lowered hands as well. `raise_rule: image` follows all.",
+        "lowered hands as well. `raise_rule: image` follows all, and so does a `gesture_release` "
+        "by the thumb.",
         unit="deg", group="perception", live=True, gt=0.0, le=180.0,
     )  # fmt: skip
     place_prior: bool = _parameter(
@@ -278,6 +280,25 @@ class Config(BaseModel):
         0.6, "`detector: pose`: a wrist nearer than this to nose, eyes or ears is not up, but at "
         "the head.",
         unit="shoulder widths", group="pose", live=True, ge=0.0, le=3.0,
+    )  # fmt: skip
+
+    # What hands say.
+    gesture_call: str = _parameter(
+        "all", "Which gestures call: all, or some of palm, fist, point, victory, thumb_up, "
+        "thumb_down, wave, stop and come with commas between, such as palm, fist, point, wave. A "
+        "raised hand that surely says something else is not raised then; one whose gesture is "
+        "not sure may call.",
+        group="gestures", live=True,
+    )  # fmt: skip
+    gesture_release: Literal[
+        "none", "palm", "fist", "point", "victory", "thumb_up", "thumb_down", "wave", "stop",
+        "come",
+    ] = _parameter(
+        "none", "The customer who is served is let go who shows this gesture, as by "
+        "~/release_customer. With thumb_up or thumb_down hands are read however far they lean "
+        "(see `search_lean_max_deg`); `selection_hold_s` says how long a lowered hand may take "
+        "to show it.",
+        group="gestures", live=True,
     )  # fmt: skip
 
     # Ranging.
@@ -590,6 +611,17 @@ class Config(BaseModel):
         unit="s", group="node", live=True, ge=0.1, le=3600.0,
     )  # fmt: skip
 
+    @property
+    def calling_gestures(self) -> tuple[Gesture, ...]:
+        """Those of `gesture_call`."""
+        return gestures_named(self.gesture_call)
+
+    @property
+    def read_lean_max_deg(self) -> float:
+        """How far hands may lean that are read: a hand whose thumb is up lies on its side."""
+        reads_all = self.raise_rule == "image" or self.gesture_release.startswith("thumb")
+        return 180.0 if reads_all else self.search_lean_max_deg
+
     @model_validator(mode="before")
     @classmethod
     def _none_is_retired(cls, values: dict[str, Any]) -> dict[str, Any]:
@@ -605,6 +637,10 @@ class Config(BaseModel):
                 f"camera_width is {self.camera_width} and camera_height is {self.camera_height}; "
                 "set both, or neither"
             )
+        try:
+            gestures_named(self.gesture_call)
+        except ValueError as error:
+            raise ValueError(f"gesture_call is {shown(self.gesture_call)}: {error}") from error
         if self.confirm_detections > self.confirm_window:
             raise ValueError(
                 f"confirm_detections is {self.confirm_detections}; it must not exceed "

@@ -19,6 +19,7 @@ GROUP_TITLES = {
     "frames": "Frames and camera",
     "perception": "Perception: image to hands",
     "pose": "Detectors and the second opinion of poses",
+    "gestures": "Gestures: what hands say",
     "ranging": "Ranging: scan to distances",
     "tracking": "Tracking: measurements to customers",
     "selection": "Selection and poses",

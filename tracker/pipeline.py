@@ -23,13 +23,17 @@ from tracker.containers import (
     LocatedScan,
     OccupancyGrid,
     Scan,
+    Tracks,
     WaitingList,
 )
 from tracker.depth_sense import DepthSense, DepthSight
 from tracker.geometry import RigidTransform
+from tracker.gesture import Gesture
 from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan, shown_ns
 from tracker.notes import Note, NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.gestures.customers import CustomerGestures
+from tracker.perception.gestures.reading import GestureReader
 from tracker.perception.upright import Turn, upright_turn
 from tracker.picture_camera import PictureCameras, configured_camera
 from tracker.ranging import (
@@ -40,7 +44,7 @@ from tracker.ranging import (
     mend_scan,
     scan_people,
 )
-from tracker.service import approach_pose, customer_pose
+from tracker.service import Command, Verb, approach_pose, customer_pose
 from tracker.tracking import PersonTracker, View
 from tracker.tracking.trace import Watch
 from tracker.transforms import StampedTransform, Transforms
@@ -94,6 +98,7 @@ class Pipeline:
         self._camera_locator = CameraLocator()
         self._map_locator = MapLocator()
         self._turn = Turn()
+        self._gestures, self._customer_gestures = GestureReader(), CustomerGestures()
         self._size: tuple[int, int] | None = None
         self._notes: list[Note] = []
         self._scan_notes: tuple[Note, ...] = ()
@@ -241,6 +246,7 @@ class Pipeline:
             expected_px = expected_hands(known_xy_m, self.camera, fixed_from_camera)
             piecewise.expect(self._turn.boxes(expected_px, size))
         upright_hands = self.detector.find(self._turn.picture(image))
+        upright_hands = self._gestures.read(image.stamp_ns, upright_hands, self.config)
         hands = self._turn.hands_back(upright_hands, size)
         tracked = self.tracker.people
         owned, depths = self._depth.ask(sight, hands, self.camera, fixed_from_camera, self.config)
@@ -281,6 +287,7 @@ class Pipeline:
                 measurements, len(tracked), None if depths is None else depths.is_known
             ),
         )
+        tracks = self._let_go(self._customer_gestures.add_to(tracks, hands))
         self._memory.postures.learn(tracks, hands)
         customers_xy_m = tracks.mean[tracks.confirmed, :2]
         self._memory.background.spare(customers_xy_m, self.config.same_person_distance_m)
@@ -335,6 +342,8 @@ class Pipeline:
         self._memory.reset()
         self._depth.reset()
         self.detector.reset()
+        self._gestures.reset()
+        self._customer_gestures.reset()
         self._camera_locator.reset()
         self._sustained_ns = -1
         self._scan_notes = ()
@@ -406,7 +415,17 @@ class Pipeline:
         turn = upright_turn(fixed_from_camera, self._turn)
         if turn != self._turn:
             self.detector.reset()
+            self._gestures.reset()
         self._turn = turn
+
+    def _let_go(self, tracks: Tracks) -> Tracks:
+        """Who says so with `gesture_release` is served no more; the next image chooses another."""
+        row = tracks.row_of(tracks.selected_id)
+        gesture = Gesture.NONE if row is None else Gesture(int(tracks.gesture[row]))
+        if gesture is Gesture.NONE or gesture.word != self.config.gesture_release:
+            return tracks
+        self.tracker.calls.obey(Command(Verb.RELEASE))
+        return replace(tracks, selected_id=None)
 
     def _camera_view(self, image: CameraImage, fixed_from_camera: RigidTransform) -> View:
         """Where hands could be seen."""

@@ -11,6 +11,7 @@ import numpy as np
 from tracker.config import NODE_NAME, Config
 from tracker.containers import CameraImage, FrameResult, ImageArray, OccupancyGrid, Scan
 from tracker.messages import encode, encode_markers
+from tracker.perception.gestures.customers import GestureNews
 from tracker.recording import RecordingWriter
 from tracker.report.birdseye import draw_birdseye
 from tracker.report.debug_picture import draw_debug_image
@@ -46,6 +47,7 @@ class ReplayOutputs:
         recording, table, video, *_ = replay_files(out)
         self._config = config
         self._ahead_m = _AHEAD_M[0]
+        self._gestures = GestureNews()
         with ExitStack() as opened:
             enter, frame = opened.enter_context, config.fixed_frame
             self._recording = enter(RecordingWriter(recording, fixed_frame=frame, overwrite=True))
@@ -82,6 +84,8 @@ class ReplayOutputs:
         if result.approach_pose is not None:
             put(f"/{NODE_NAME}/approach_pose", stamp_ns, result.approach_pose)
         put("/hand_raised", stamp_ns, result.hand_raised)
+        for news in self._gestures.after(tracks):
+            put(f"/{NODE_NAME}/gesture", stamp_ns, news)
         debug = draw_debug_image(image, result.hands, tracks, self._config)
         put("/hand_detection_debug", stamp_ns, CameraImage(stamp_ns, image.frame_id, debug))
         if result.frame_id is not None:

@@ -7,9 +7,11 @@ from scipy.spatial.transform import Rotation
 
 from tracker import CameraImage, Config, Hands, Pipeline, Scan
 from tracker.camera import CameraModel
-from tracker.containers import Caller, CallState, OccupancyGrid, WaitingList
+from tracker.containers import Caller, CallState, OccupancyGrid, Refusal, WaitingList
 from tracker.geometry import RigidTransform, euler_to_quaternion
+from tracker.gesture import Gesture
 from tracker.notes import Note, NoteKind
+from tracker.simulation.hand_signs import draw_hands
 from tracker.transforms import StampedTransform
 
 PERIOD_NS = 100_000_000
@@ -651,3 +653,54 @@ def test_calls_outlive_a_camera_that_pauses_for_minutes(located):
     later = play(located, 3, START_NS + 200_000_000_000, scan=None)[-1]
     assert len(later.tracks) == 0
     assert [caller.id for caller in later.waiting_list.waiting] == [1]
+
+
+class SignedHand(SeenHands):
+    """One raised hand that shows a sign, drawn 150 px long."""
+
+    def __init__(self, sign):
+        super().__init__((320, 200))
+        self.sign = sign
+
+    def find(self, image):
+        drawn = draw_hands(
+            self.sign, 4, np.random.default_rng(5), turn_max_deg=3.0,
+            size_px=(150.0, 150.1), noise=(0.005, 0.006),
+        )  # fmt: skip
+        row = 0 if self.sign != "thumb" else int(np.argmax(drawn.gesture == Gesture.THUMB_UP))
+        points = drawn.landmarks_px[[row]] + self.wrists_px[0]
+        one = np.ones(1)
+        return Hands(points, one, drawn.is_right[[row]], one.astype(bool), one)
+
+
+def signing(sign, **changes):
+    pipeline = Pipeline(Config(**changes), SignedHand(sign))
+    pipeline.add_transform(static("map", "camera_link"))
+    pipeline.add_transform(static("map", "laser"))
+    return pipeline
+
+
+def test_a_customer_says_what_the_hand_shows():
+    result = play(signing("fist"), 5)[-1]
+    assert result.tracks.gesture.tolist() == [Gesture.FIST]
+    assert result.hand_raised
+
+
+def test_a_sign_that_does_not_call_is_nobody():
+    results = play(signing("fist", gesture_call="palm, wave"), 10)
+    assert not results[-1].hand_raised
+    assert results[-1].hands.refusal.tolist() == [Refusal.OTHER_SIGN]
+
+
+def test_a_thumb_lets_the_served_customer_go():
+    pipeline = signing("palm", gesture_release="thumb_up")
+    assert play(pipeline, 5)[-1].tracks.selected_id == 1
+    pipeline.detector.sign = "thumb"
+    results = play(pipeline, 10, START_NS + 5 * PERIOD_NS)
+    assert results[0].tracks.selected_id == 1
+    assert results[-1].tracks.gesture.tolist() == [Gesture.THUMB_UP]
+    assert results[-1].tracks.selected_id is None, "and is not chosen again while the hand is up"
+
+
+def test_a_gesture_lets_nobody_go_unless_that_is_wanted():
+    assert play(signing("thumb"), 10)[-1].tracks.selected_id == 1

@@ -8,6 +8,7 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracker.containers.arrays import (
     COUNTS,
@@ -29,6 +30,8 @@ _LAYOUT = {
     "torso_px": (NUMBERS, (2,)),
     "refusal": (COUNTS, ()),
     "seated": (NUMBERS, ()),
+    "gesture": (COUNTS, ()),
+    "wrist_only": (FLAGS, ()),
 }
 
 
@@ -47,6 +50,7 @@ class Refusal(IntEnum):
     ARM_DOWN = 9
     BEFORE_BODY = 10
     ALWAYS_THERE = 11
+    OTHER_SIGN = 12
 
     @property
     def words(self) -> str:
@@ -67,6 +71,7 @@ _WORDS = {
     Refusal.ARM_DOWN: "arm not up",
     Refusal.BEFORE_BODY: "in front of the body",
     Refusal.ALWAYS_THERE: "always there, like a poster",
+    Refusal.OTHER_SIGN: "a sign that is no call",
 }
 
 
@@ -89,6 +94,10 @@ class Hands:
             ones, and where the detector gives no reason. None means 0 for all.
         seated: Shape (H,), in [0, 1]: whether whose hand it is sits; NaN where that is not known.
             None means that of no hand.
+        gesture: Shape (H,), int64: what the hand has said of late, a `tracker.gesture.Gesture`;
+            NONE is 0, and stands where nobody is sure. None means 0 for all.
+        wrist_only: Shape (H,), bool: a forearm ends there, and the landmarks but the wrist are
+            supposed. None means that of no hand.
     """
 
     landmarks_px: FloatArray
@@ -99,15 +108,22 @@ class Hands:
     torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
     refusal: IntArray = None  # type: ignore[assignment]  # 0 takes its place
     seated: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
+    gesture: IntArray = None  # type: ignore[assignment]  # 0 takes its place
+    wrist_only: BoolArray = None  # type: ignore[assignment]  # False takes its place
 
     def __post_init__(self) -> None:
-        if self.torso_px is None:
-            object.__setattr__(self, "torso_px", np.full((len(self.landmarks_px), 2), np.nan))
-        if self.refusal is None:
-            object.__setattr__(self, "refusal", np.zeros(len(self.landmarks_px), dtype=np.int64))
-        if self.seated is None:
-            object.__setattr__(self, "seated", np.full(len(self.landmarks_px), np.nan))
-        check_rows(self, len(self.landmarks_px), _LAYOUT)
+        count = len(self.landmarks_px)
+        unknown: dict[str, NDArray[Any]] = {
+            "torso_px": np.full((count, 2), np.nan),
+            "seated": np.full(count, np.nan),
+            "refusal": np.zeros(count, np.int64),
+            "gesture": np.zeros(count, np.int64),
+            "wrist_only": np.zeros(count, np.bool_),
+        }
+        for name, value in unknown.items():
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, value)
+        check_rows(self, count, _LAYOUT)
 
     def __len__(self) -> int:
         return len(self.score)

@@ -15,6 +15,7 @@ from tracker.containers.arrays import (
     FloatArray,
     IntArray,
     check_rows,
+    constant,
     select,
 )
 
@@ -29,6 +30,7 @@ _LAYOUT = {
     "age_s": (NUMBERS, ()),
     "unseen_s": (NUMBERS, ()),
     "hand": (COUNTS, ()),
+    "gesture": (COUNTS, ()),
 }
 
 
@@ -53,6 +55,8 @@ class Tracks:
         selected_id: The customer who is served, or None.
         refused: How many measurements told nothing: nobody's, and too little to show somebody new
             (a range alone).
+        gesture: Shape (N,), int64: what the person's hand says, a `tracker.gesture.Gesture`; NONE,
+            0, where nobody knows. None means 0 for all.
     """
 
     stamp_ns: int
@@ -68,8 +72,11 @@ class Tracks:
     hand: IntArray
     selected_id: int | None = None
     refused: int = 0
+    gesture: IntArray = None  # type: ignore[assignment]  # 0 takes its place
 
     def __post_init__(self) -> None:
+        if self.gesture is None:
+            object.__setattr__(self, "gesture", constant(0, (len(self.id),), COUNTS))
         check_rows(self, len(self.id), _LAYOUT)
 
     def __len__(self) -> int:

@@ -13,6 +13,7 @@ from tracker.camera import CameraModel
 from tracker.containers import CameraImage, DepthImage, OccupancyGrid, Pose, Scan, Tracks, Truth
 from tracker.errors import RecordingError
 from tracker.geometry import euler_to_quaternion
+from tracker.gesture import Gesture
 from tracker.messages import types
 from tracker.messages.depth import depth_message_fields, packed_depth_fields
 from tracker.messages.types import Encoded, build, serialize
@@ -50,6 +51,7 @@ Encodable: TypeAlias = (
     | CameraInfo
     | OccupancyGrid
     | bool
+    | str
     | Pose
     | Tracks
     | Truth
@@ -69,8 +71,10 @@ def encode(item: Encodable, *, frame_id: str = "map", jpeg_quality: int | None =
     | CameraInfo | sensor_msgs/CameraInfo |
     | OccupancyGrid | nav_msgs/OccupancyGrid |
     | bool | std_msgs/Bool |
+    | str | std_msgs/String |
     | Pose | geometry_msgs/PoseStamped |
-    | Tracks | vision_msgs/Detection3DArray: id, `hand_raised` or `hand_lowered`, existence |
+    | Tracks | vision_msgs/Detection3DArray: id, `hand_raised` or `hand_lowered`, existence; and
+      `customer/` with a gesture, as `customer/wave`, where one is known |
     | Truth | vision_msgs/Detection3DArray: the same, and `in_view` where that holds |
     | Encoded | itself |
 
@@ -122,6 +126,8 @@ def _message(item: Encodable, frame_id: str, jpeg_quality: int | None) -> Any:
     match item:
         case bool() | np.bool_():
             return build(types.BOOL, data=bool(item))
+        case str():
+            return build(types.STRING, data=item)
         case CameraImage():
             return _image(item) if jpeg_quality is None else _compressed(item, jpeg_quality)
         case DepthImage():
@@ -258,13 +264,18 @@ def _tracks(tracks: Tracks, frame_id: str) -> Any:
             track_id=int(tracks.id[row]),
             xy=(float(tracks.mean[row, 0]), float(tracks.mean[row, 1])),
             covariance=tracks.covariance[row, :2, :2],
-            words=["hand_raised" if tracks.raised[row] else "hand_lowered"],
+            words=_words(bool(tracks.raised[row]), Gesture(int(tracks.gesture[row]))),
             score=float(tracks.existence[row]),
             stamp=header(tracks.stamp_ns, frame_id),
         )
         for row in range(len(tracks))
     ]
     return build(types.DETECTIONS, header=header(tracks.stamp_ns, frame_id), detections=people)
+
+
+def _words(is_raised: bool, gesture: Gesture) -> list[str]:
+    words = ["hand_raised" if is_raised else "hand_lowered"]
+    return words if gesture is Gesture.NONE else [*words, f"customer/{gesture.word}"]
 
 
 def _truth(truth: Truth, frame_id: str) -> Any:

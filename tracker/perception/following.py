@@ -288,8 +288,7 @@ def _is_readable(regions: Regions, config: Config) -> BoolArray:
     """Squares of some size, of hands that the rule could call raised, now or in a moment."""
     finite = np.isfinite(regions.center_px).all(axis=-1) & np.isfinite(regions.side_px)
     finite &= regions.side_px > 1.0
-    rule = config.raise_rule
-    lean_max_rad = np.inf if rule == "image" else np.radians(config.search_lean_max_deg)
+    lean_max_rad = np.radians(config.read_lean_max_deg) + 1e-9
     return np.asarray(finite & (np.abs(regions.rotation_rad) <= lean_max_rad))
 
 

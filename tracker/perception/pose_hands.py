@@ -114,6 +114,7 @@ def draw_hands(
         torso,
         refusal=np.where(raised, Refusal.NO_REASON, Refusal.ARM_DOWN),
         seated=bodies.seated[person],
+        wrist_only=np.ones(len(raised), dtype=bool),
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import CameraImage, Hands, ImageArray, Refusal, Tracks
+from tracker.gesture import Gesture
 from tracker.perception.pictures import shrink_picture
 from tracker.perception.verdict.raise_rules import MEASURE_UNITS
 
@@ -49,8 +50,9 @@ def draw_debug_image(
 
     Every hand shows its landmarks and a circle at the wrist; a raised one `HAND RAISED` with its
     measure; the nearest of the others, the largest, why it is not raised; one that belongs to a
-    track the person's number, and whether the streak calls the hand raised. Who is served is
-    framed and stands out. `NO HAND DETECTED` is written only where there is none.
+    track the person's number, and whether the streak calls the hand raised; and what it says, as
+    `wave`, where that is sure. Who is served is framed and stands out. `NO HAND DETECTED` is
+    written only where there is none.
 
     Args:
         image: The picture.
@@ -125,13 +127,19 @@ def _lines_of_hand(
     hands: Hands, row: int, tracks: Tracks | None, owner: int | None, config: Config
 ) -> list[_Label]:
     lines = []
+    gesture = Gesture(int(hands.gesture[row]))
+    word = "" if gesture is Gesture.NONE else gesture.label
     if tracks is not None and owner is not None:
         number = f"#{tracks.id[owner]}"
         state = f"{number} raised" if tracks.raised[owner] else number
+        said = f"{state}: {word}" if word else state
         if _is_selected(tracks, owner):
-            lines.append(_Label((f"{state} - served", state, number), SELECTED_COLOR, True))
+            variants = (f"{state} - served: {word}" if word else f"{state} - served", said, number)
+            lines.append(_Label(variants, SELECTED_COLOR, True))
         else:
-            lines.append(_Label((state, number), TEXT_COLOR))
+            lines.append(_Label((said, state, number), TEXT_COLOR))
+    elif word:
+        lines.append(_Label((word,), TEXT_COLOR))
     if hands.raised[row]:
         measure = f"{hands.raise_measure[row]:.2f}"
         unit = MEASURE_UNITS[config.raise_rule]

@@ -14,6 +14,7 @@ import numpy as np
 
 from tracker.containers import FloatArray, FrameResult, Refusal, Tracks
 from tracker.geometry import worst_std
+from tracker.gesture import Gesture
 from tracker.notes import NoteKind
 from tracker.report.hit_grid import HitGrid
 from tracker.report.trail import Trail
@@ -74,6 +75,13 @@ class RaisedHand(Span):
 
 
 @dataclass(slots=True, eq=False)
+class SaidByHand(Span):
+    """How long a person's hand said one thing."""
+
+    gesture: Gesture = Gesture.NONE
+
+
+@dataclass(slots=True, eq=False)
 class Person:
     """One confirmed customer.
 
@@ -85,6 +93,7 @@ class Person:
         path: Rows of x_m, y_m, while the place was known.
         hands: Each time the hand was up, in order of time.
         selected: Each time this person was the one served, in order of time.
+        said: What the hand said, in order of time.
     """
 
     id: int
@@ -94,6 +103,7 @@ class Person:
     path: Trail = field(default_factory=lambda: Trail(2, capacity=256))
     hands: list[RaisedHand] = field(default_factory=list)
     selected: list[Span] = field(default_factory=list)
+    said: list[SaidByHand] = field(default_factory=list)
 
 
 class History:
@@ -130,6 +140,7 @@ class History:
         self._scan_stamp_ns = -1
         self._open_hands: dict[int, RaisedHand] = {}
         self._open_selection: dict[int, Span] = {}
+        self._open_said: dict[int, SaidByHand] = {}
 
     def write(self, result: FrameResult) -> None:
         """Take in what one image led to; a stamp that jumps back ends all that lasts."""
@@ -207,10 +218,23 @@ class History:
             self._open_hands.pop(track_id).end_ns = now_ns
         for track_id in [key for key in self._open_selection if key != tracks.selected_id]:
             self._open_selection.pop(track_id).end_ns = now_ns
+        self._write_said(tracks)
         while len(self.people) > PEOPLE_KEPT:
             gone = min(self.people.values(), key=lambda person: person.last_seen_ns)
             del self.people[gone.id]
             self.people_dropped += 1
+
+    def _write_said(self, tracks: Tracks) -> None:
+        codes = zip(tracks.id.tolist(), tracks.gesture.tolist(), strict=True)
+        now = {track_id: Gesture(code) for track_id, code in codes if code != Gesture.NONE}
+        for track_id, span in list(self._open_said.items()):
+            if now.get(track_id) != span.gesture:
+                self._open_said.pop(track_id).end_ns = tracks.stamp_ns
+        for track_id, gesture in now.items():
+            if track_id not in self._open_said:
+                span = SaidByHand(tracks.stamp_ns, None, gesture)
+                self._open_said[track_id] = span
+                self.people[track_id].said.append(span)
 
     def _forget_places(self) -> None:
         """Places before the first transform were the camera's, not the fixed frame's."""
@@ -220,7 +244,7 @@ class History:
                 hand.placed, hand.sum_xy_m = 0, np.zeros(2)
 
     def _end_all(self, stamp_ns: int) -> None:
-        for span in (*self._open_hands.values(), *self._open_selection.values()):
-            span.end_ns = stamp_ns
-        self._open_hands.clear()
-        self._open_selection.clear()
+        for open_spans in (self._open_hands, self._open_selection, self._open_said):
+            for span in open_spans.values():
+                span.end_ns = stamp_ns
+            open_spans.clear()

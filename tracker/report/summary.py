@@ -43,6 +43,7 @@ def summarize(
                             began, bearing_deg from the camera and the x axis
             xy_m            mean over all episodes; null without one, or without a place
             selected        [{from_s, to_s}]; to_s is null while it lasts
+            gestures        [{gesture, from_s, to_s}], likewise; the words are those of `Gesture`
         people_dropped      customers left out to bound memory
         evaluation          `EpisodeReport.as_dict()`, only where the truth was known
 
@@ -133,6 +134,14 @@ def _person(history: History, person: Person) -> dict[str, Any]:
         "selected": [
             {"from_s": _seconds(history, span.start_ns), "to_s": _seconds(history, span.end_ns)}
             for span in person.selected
+        ],
+        "gestures": [
+            {
+                "gesture": span.gesture.word,
+                "from_s": _seconds(history, span.start_ns),
+                "to_s": _seconds(history, span.end_ns),
+            }
+            for span in person.said
         ],
     }
 

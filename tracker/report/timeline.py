@@ -16,6 +16,8 @@ from tracker.report.palette import FADED, INK, LIT, PAPER, person_color
 _LANES = 20
 _BAR = 0.36
 _TRUTH_BAR = 0.13
+#: A gesture is named that lasts for so much of the recording; less has no room for a word.
+_WORD = 0.04
 
 
 @dataclass(slots=True, eq=False)
@@ -123,6 +125,14 @@ def _draw_lane(
         [place(hand.start_ns, hand.end_ns) for hand in person.hands],
         (y - _BAR / 2, _BAR), facecolors=color, linewidths=0, zorder=5,
     )  # fmt: skip
+    _, whole = place(history.start_ns or 0, end_ns)
+    for span in person.said:
+        start, length = place(span.start_ns, span.end_ns)
+        if length >= _WORD * whole:
+            axes.text(
+                start, y, f" {span.gesture.label}", ha="left", va="center_baseline", color=INK,
+                fontsize=7, clip_on=True, zorder=6,
+            )  # fmt: skip
 
 
 def _draw_legend(axes: Axes, history: History, lanes: list[Lane]) -> None:

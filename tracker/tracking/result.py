@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import IntArray, Tracks
-from tracker.containers.arrays import sealed, trusted
+from tracker.containers.arrays import COUNTS, constant, sealed, trusted
 from tracker.tracking import people as field
 from tracker.tracking.bias import BIAS
 from tracker.tracking.renewal import Frame
@@ -53,4 +53,5 @@ def tracks_of(frame: Frame, stamp_ns: int, rows: IntArray | None) -> Tracks:
         hand=counts[field.HAND],
         selected_id=None,
         refused=frame.refused,
+        gesture=constant(0, (len(mean),), COUNTS),
     )

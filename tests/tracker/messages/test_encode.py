@@ -11,6 +11,7 @@ from tracker.camera import CameraModel
 from tracker.containers import CameraImage, Hands, OccupancyGrid, Pose, Scan, Tracks, Truth
 from tracker.errors import RecordingError
 from tracker.geometry import RigidTransform
+from tracker.gesture import Gesture
 from tracker.messages import CameraInfo, Encoded, decode, encode
 from tracker.messages.types import deserialize
 from tracker.transforms import StampedTransform
@@ -197,7 +198,7 @@ def test_what_is_encoded_already_passes_through():
     assert encode(message) is message
 
 
-@pytest.mark.parametrize("item", [Hands.none(), 3, "text", None, [1, 2]], ids=repr)
+@pytest.mark.parametrize("item", [Hands.none(), 3, None, [1, 2]], ids=repr)
 def test_what_ros_has_no_message_for_is_refused(item):
     with pytest.raises(RecordingError, match="no ROS message"):
         encode(item)
@@ -213,3 +214,17 @@ def test_an_impossible_jpeg_quality_is_refused(quality):
     image = CameraImage(0, "", np.zeros((2, 2, 3), dtype=np.uint8))
     with pytest.raises(RecordingError, match="1 to 100"):
         encode(image, jpeg_quality=quality)
+
+
+def test_what_a_customer_says_is_a_second_hypothesis():
+    message = deserialize(*encode(tracks(gesture=[Gesture.WAVE, Gesture.NONE])))
+    words = [
+        [result.hypothesis.class_id for result in person.results] for person in message.detections
+    ]
+    assert words == [["hand_raised", "customer/wave"], ["hand_lowered"]]
+    assert {result.hypothesis.score for result in message.detections[0].results} == {0.9}
+
+
+def test_a_text_has_the_bytes_of_ros():
+    golden = Cdr().text("3 wave")
+    assert encode("3 wave") == ("std_msgs/msg/String", golden.bytes)

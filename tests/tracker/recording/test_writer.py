@@ -184,7 +184,7 @@ def test_misuse_is_refused(tmp_path):
         with pytest.raises(RecordingError, match="begins at 0"):
             writer.write("/hand_raised", -1, True)
         with pytest.raises(RecordingError, match="no ROS message"):
-            writer.write("/hand_raised", 6, "up")
+            writer.write("/hand_raised", 6, 3)
     writer.close()
     with pytest.raises(RecordingError, match="is closed"):
         writer.write("/hand_raised", 7, True)

@@ -1,6 +1,9 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from tracker.gesture import Gesture
 from tracker.notes import Note, NoteKind
 from tracker.report import history as history_module
 from tracker.report.history import History
@@ -100,3 +103,17 @@ def test_places_before_the_first_transform_are_no_places_of_the_fixed_frame(resu
     early, late = history.people.values()
     assert early.hands[0].mean_xy_m is None
     assert late.hands[0].mean_xy_m.tolist() == [11.0, 5.4]
+
+
+def test_what_a_hand_says_is_an_interval_of_each_gesture(result_of):
+    history = History()
+    said = [Gesture.NONE, Gesture.PALM, Gesture.PALM, Gesture.WAVE, Gesture.NONE, Gesture.PALM]
+    for number, gesture in enumerate(said):
+        result = result_of(number * 10**9, (3, 1.0, 0.0, True))
+        tracks = replace(result.tracks, gesture=[gesture])
+        history.write(replace(result, tracks=tracks))
+    spans = [
+        (span.gesture, span.start_ns // 10**9, span.end_ns and span.end_ns // 10**9)
+        for span in history.people[3].said
+    ]
+    assert spans == [(Gesture.PALM, 1, 3), (Gesture.WAVE, 3, 4), (Gesture.PALM, 5, None)]

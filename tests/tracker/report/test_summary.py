@@ -9,6 +9,7 @@ from rich.console import Console
 from tracker.containers import Hands, Refusal
 from tracker.errors import RecordingError
 from tracker.evaluation.metrics.episodes import EpisodeEvaluation
+from tracker.gesture import Gesture
 from tracker.notes import Note, NoteKind
 from tracker.report.history import History
 from tracker.report.summary import summarize, summary_table, write_summary
@@ -121,3 +122,12 @@ def test_a_hand_without_a_known_place_has_a_bearing_and_no_place(result_of):
         np.degrees(np.arctan(0.2 / 2**0.5)), abs=1e-3
     )
     assert len(history.people[1].path.rows) == 0
+
+
+def test_what_a_person_said_is_told_by_its_word(result_of):
+    history = History()
+    for number, gesture in enumerate([Gesture.THUMB_UP, Gesture.NONE]):
+        result = result_of(number * 10**9, (3, 1.0, 0.0, True))
+        history.write(replace(result, tracks=replace(result.tracks, gesture=[gesture])))
+    (person,) = summarize(history)["people"]
+    assert person["gestures"] == [{"gesture": "thumb_up", "from_s": 0.0, "to_s": 1.0}]

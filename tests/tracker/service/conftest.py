@@ -30,6 +30,7 @@ def tracks_of(stamp_ns, people, up, since_ns):
         age_s=np.ones(count),
         unseen_s=np.zeros(count),
         hand=-np.ones(count, dtype=np.int64),
+        gesture=np.zeros(count, dtype=np.int64),
     )
 
 

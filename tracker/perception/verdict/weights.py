@@ -52,7 +52,7 @@ WEIGHTS = {
     "fist_low": Weight(-1.64, -2.0, reason=Refusal.BELOW_SHOULDERS),
     "overhead": Weight(1.52, 2.0),
     "forearm": Weight(3.76, 2.0, reason=Refusal.ARM_DOWN),
-    "head": Weight(-5.25, -3.0, reason=Refusal.AT_HEAD),
+    "head": Weight(-5.25, -8.0, 10.0, Refusal.AT_HEAD),
     "inside": Weight(-2.08, -2.0, reason=Refusal.BEFORE_BODY),
     "together": Weight(-2.01, -2.0, 10.0, Refusal.BEFORE_BODY),
     "doubt": Weight(-1.09, -0.5, reason=Refusal.OWNER_UNKNOWN),
