@@ -74,7 +74,7 @@ def test_a_browser_gets_a_frame_whenever_it_asks(server, watched):
         assert jpeg[:2] == b"\xff\xd8"
         socket.send(json.dumps({"do": "serve 1"}))
         time.sleep(0.3)
-        watched.run(1)
+        watched.run(2)  # it is followed between two frames
         assert frame(socket)[0]["callers"][0]["state"] == "being_served"
 
 
