@@ -1,9 +1,11 @@
 # Each target sets up what it needs in .venv; Python >= 3.10 with pip is all that must be there.
 #   make test NUMPY=1.26.4     the tests with that numpy, in a venv of its own
 #   make demo PYTHON=python3.12
+#   make setup NUMPY=1.26.4 VENV_FLAGS=--system-site-packages     the same venv, seeing ROS's packages
 
 PYTHON ?= python3
 NUMPY ?=
+VENV_FLAGS ?=
 VENV := .venv$(if $(NUMPY),-numpy-$(NUMPY))
 BIN := $(VENV)/bin
 # The viewer wants numpy 2, so that its tests are skipped with an older one.
@@ -81,9 +83,9 @@ $(VENV)/.created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
 		{ echo "$(PYTHON) is not Python 3.10 or later; name one: make ... PYTHON=python3.12"; exit 1; }
 	@if $(PYTHON) -c 'import ensurepip' 2>/dev/null; then \
-		$(PYTHON) -m venv $(VENV); \
+		$(PYTHON) -m venv $(VENV_FLAGS) $(VENV); \
 	else \
-		$(PYTHON) -m venv --without-pip $(VENV) && \
+		$(PYTHON) -m venv $(VENV_FLAGS) --without-pip $(VENV) && \
 		$(PYTHON) -m pip --python $(BIN)/python install --quiet pip; \
 	fi || { echo "No virtual environment can be made; on Debian and Ubuntu:" \
 		"sudo apt install python3-venv"; exit 1; }

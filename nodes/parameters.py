@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from tracker.config import Config, allowed_values, parameter_extra
+from tracker.config_file import grouped_parameters
 from tracker.errors import ConfigError
 from tracker.parameter_file import is_ours
 
@@ -18,7 +19,7 @@ class Descriptor(NamedTuple):
     Attributes:
         name: As in the YAML file.
         default: Of type bool, int, float or str.
-        description: Its meaning, with the unit.
+        description: Its meaning, with the unit, and whether it is for experts.
         constraints: What it may be, in words.
         is_read_only: Needs a new start of the node.
         minimum: Inclusive, as ROS has it; where the bound itself is not allowed, the check says.
@@ -35,8 +36,8 @@ class Descriptor(NamedTuple):
 
 
 def descriptors() -> list[Descriptor]:
-    """One for each parameter, in the order of the YAML file."""
-    return [_descriptor(name) for name in Config.model_fields]
+    """One for each parameter, in the order of the YAML file: basic ones first."""
+    return [_descriptor(name) for _, _, names in grouped_parameters() for name in names]
 
 
 def changed(config: Config, changes: dict[str, Any], *, is_running: bool = True) -> Config:
@@ -69,12 +70,12 @@ def changed(config: Config, changes: dict[str, Any], *, is_running: bool = True)
 
 def _descriptor(name: str) -> Descriptor:
     info, extra = Config.model_fields[name], parameter_extra(name)
+    unit = f"[{extra['unit']}]" if extra["unit"] else ""
+    note = "(expert)" if extra["level"] == "expert" else ""
     return Descriptor(
         name=name,
         default=info.default,
-        description=f"{info.description} [{extra['unit']}]"
-        if extra["unit"]
-        else info.description or "",
+        description=" ".join(filter(None, [info.description, unit, note])),
         constraints=allowed_values(name),
         is_read_only=not extra["live"],
         minimum=_bound(info.metadata, "gt", "ge"),

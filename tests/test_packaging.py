@@ -1,6 +1,7 @@
 """setup.py, pyproject.toml and package.xml tell one story."""
 
 import ast
+import re
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -49,6 +50,30 @@ def test_the_ros_package_has_the_same_version_license_and_description():
     assert package.findtext("license") == PROJECT["license"]["text"]
     assert package.findtext("description") == PROJECT["description"]
     assert package.find("maintainer").get("email") == PROJECT["authors"][0]["email"]
+
+
+def test_rosdep_is_asked_only_for_what_it_can_install_on_ubuntu():
+    package = ElementTree.parse(ROOT / "package.xml").getroot()
+    keys = {item.text for item in package.iter("exec_depend")}
+    # Ubuntu 24.04 lets rosdep install nothing with pip, and a whole installation fails by it.
+    assert [key for key in keys if key.endswith("-pip")] == []
+    ours = " ".join(PROJECT["dependencies"]).lower()
+    modules = {key.removeprefix("python3-") for key in keys if key.startswith("python3-")}
+    assert modules - {"venv", "yaml"} <= set(re.findall(r"[a-z0-9]+", ours))
+
+
+def test_every_ros_package_that_the_nodes_import_is_named():
+    package = ElementTree.parse(ROOT / "package.xml").getroot()
+    keys = {item.text for item in package.iter("exec_depend")} | {"tf2_ros"}  # of tf2_ros_py
+    sources = [*(ROOT / "nodes").rglob("*.py"), *(ROOT / "launch").glob("*.py")]
+    ros = r"rclpy|tf2_\w+|launch\w*|ament_\w+|\w+_interfaces|\w+_msgs|\w+_srvs"
+    words = rf"^ *(?:from|import) ({ros})\b"
+    imported = {
+        name
+        for path in sources
+        for name in re.findall(words, path.read_text(encoding="utf-8"), re.M)
+    }
+    assert {"rclpy", "sensor_msgs", "launch_ros"} <= imported <= keys
 
 
 def test_the_resource_marker_bears_the_packages_name():

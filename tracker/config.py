@@ -54,12 +54,17 @@ def _parameter(
     *,
     unit: str = "",
     group: str,
+    level: Literal["basic", "expert"] = "expert",
     live: bool = False,
     search: Search | None = None,
     **bounds: Any,
 ) -> Any:
-    """A field with its unit, its group in the documentation, and whether it may change live."""
-    extra: dict[str, Any] = {"unit": unit, "group": group, "live": live}
+    """A field with its unit, its group in the documentation, its level, and whether it is live.
+
+    Basic are those that a new robot or another room may need; the defaults of the others mostly
+    stay. Live ones may change while the node runs.
+    """
+    extra: dict[str, Any] = {"unit": unit, "group": group, "level": level, "live": live}
     extra["search"] = None if search is None else asdict(search)
     return Field(default, description=description, json_schema_extra=extra, **bounds)
 
@@ -78,42 +83,52 @@ class Config(BaseModel):
     # The specification's table 1.
     processing_rate: float = _parameter(
         10.0, "Images processed per second, on average; the others are passed over.",
+        level="basic",
         unit="Hz", group="specification", live=True, gt=0.0, le=240.0,
     )  # fmt: skip
     downscale_factor: int = _parameter(
         2, "The whole-frame search and the debug image work on the picture shrunk by this factor.",
+        level="basic",
         group="specification", live=True, ge=1, le=16,
     )  # fmt: skip
     hand_raised_threshold: float = _parameter(
         0.25, "`raise_rule: image`: how far the middle finger's tip must be above the wrist.",
+        level="basic",
         unit="image heights", group="specification", live=True, ge=0.0, le=1.0,
     )  # fmt: skip
     detection_confidence: float = _parameter(
         0.6, "Score from which the palm search believes in a hand.",
+        level="basic",
         group="specification", live=True, gt=0.0, lt=1.0,
     )  # fmt: skip
     tracking_confidence: float = _parameter(
         0.5, "Landmark score from which a hand is followed into the next image.",
+        level="basic",
         group="specification", live=True, gt=0.0, lt=1.0,
     )  # fmt: skip
     model_complexity: int = _parameter(
         0, "Hand models: 0 lite (faster), 1 full (more accurate).",
+        level="basic",
         group="specification", ge=0, le=1,
     )  # fmt: skip
     camera_fx: float = _parameter(
         460.0, "Focal length along the columns of the full image, until a CameraInfo comes.",
+        level="basic",
         unit="px", group="specification", live=True, gt=0.0, le=1e5,
     )  # fmt: skip
     camera_fy: float = _parameter(
         460.0, "Focal length along the rows of the full image, until a CameraInfo comes.",
+        level="basic",
         unit="px", group="specification", live=True, gt=0.0, le=1e5,
     )  # fmt: skip
     camera_cx: float = _parameter(
         320.0, "Column of the principal point of the full image, until a CameraInfo comes.",
+        level="basic",
         unit="px", group="specification", live=True, ge=-1e5, le=1e5,
     )  # fmt: skip
     camera_cy: float = _parameter(
         240.0, "Row of the principal point of the full image, until a CameraInfo comes.",
+        level="basic",
         unit="px", group="specification", live=True, ge=-1e5, le=1e5,
     )  # fmt: skip
 
@@ -135,25 +150,30 @@ class Config(BaseModel):
     )  # fmt: skip
     fixed_frame: str = _parameter(
         "map", "Frame in which customers are tracked and poses are given.",
+        level="basic",
         group="frames",
     )  # fmt: skip
     camera_frame: str = _parameter(
         "camera_link", "The camera's frame; the image's own frame_id is used where this is empty.",
+        level="basic",
         group="frames",
     )  # fmt: skip
     camera_axes: Literal["auto", "body", "optical"] = _parameter(
         "auto", "Axes of the camera's frame: body (x forward, z up), optical (z forward, y down), "
         "or auto (optical if its name holds `optical`).",
+        level="basic",
         group="frames",
     )  # fmt: skip
     camera_roll_deg: float = _parameter(
         0.0, "How far the camera is rolled, clockwise as seen from behind it, beyond what its "
         "transform says; hands are searched in upright pictures. For cameras without a transform, "
         "or one that does not tell of their mounting.",
+        level="basic",
         unit="deg", group="frames", live=True, ge=-180.0, le=180.0,
     )  # fmt: skip
     use_camera_info: bool = _parameter(
         True, "Take intrinsics and distortion from CameraInfo when it comes.",
+        level="basic",
         group="frames",
     )  # fmt: skip
     image_form: Literal["auto", "raw", "rectified"] = _parameter(
@@ -169,6 +189,7 @@ class Config(BaseModel):
     )  # fmt: skip
     transform_wait_s: float = _parameter(
         0.3, "How long an image may wait for the transform at its own stamp.",
+        level="basic",
         unit="s", group="frames", live=True, ge=0.0, le=5.0,
     )  # fmt: skip
 
@@ -194,6 +215,7 @@ class Config(BaseModel):
         "evidence", "When is a hand up? evidence: hand, arm, body and movement are weighed, at "
         "any distance; a palm, fist, finger or wave may call. palm: an open hand, in palm "
         "lengths; image: the specification's shares of the image, up to 0.7 m.",
+        level="basic",
         group="perception", live=True,
     )  # fmt: skip
     palm_raised_threshold: float = _parameter(
@@ -216,11 +238,13 @@ class Config(BaseModel):
     search_regions_per_frame: int = _parameter(
         3, "Places of the picture (the whole, tiles, windows around people) that are searched for "
         "new hands in each image.",
+        level="basic",
         group="perception", live=True, ge=1, le=64,
     )  # fmt: skip
     piece_confidence: float = _parameter(
         0.35, "Score from which the search of a piece of the picture believes in a hand shorter "
         "than `small_hand_px`: such palms score low, and the landmark model sorts them out.",
+        level="basic",
         group="perception", live=True, gt=0.0, lt=1.0,
     )  # fmt: skip
     search_lean_max_deg: float = _parameter(
@@ -236,10 +260,12 @@ class Config(BaseModel):
     )  # fmt: skip
     max_hands: int = _parameter(
         8, "Hands followed at a time; the search rests while so many are followed.",
+        level="basic",
         group="perception", live=True, ge=1, le=64,
     )  # fmt: skip
     inference_threads: int = _parameter(
         2, "Processor threads for the models.",
+        level="basic",
         group="perception", ge=1, le=32,
     )  # fmt: skip
     execution_provider: Literal["cpu", "cuda", "tensorrt", "openvino", "coreml", "auto"] = (
@@ -247,6 +273,7 @@ class Config(BaseModel):
             "cpu", "Where ONNX Runtime runs the models; anything but cpu needs the build of "
             "onnxruntime that has it. auto: the first of cuda, coreml, openvino and cpu that is "
             "there.",
+            level="basic",
             group="perception",
         )
     )  # fmt: skip
@@ -255,6 +282,7 @@ class Config(BaseModel):
     detector: Literal["hands", "pose", "mediapipe"] = _parameter(
         "hands", "What finds raised hands: hands (MediaPipe's hand models on ONNX Runtime), pose "
         "(the arms of body poses) or mediapipe (an installed mediapipe 0.10, as it is).",
+        level="basic",
         group="pose",
     )  # fmt: skip
     pose_model: str = _parameter(
@@ -266,6 +294,7 @@ class Config(BaseModel):
         "evidence", "`detector: hands`, `raise_rule: evidence`: what body poses say about the "
         "hands. evidence: the owners of hands are looked for, and arms that are up where no hand "
         "was found; none: hands are judged alone.",
+        level="basic",
         group="pose",
     )  # fmt: skip
     pose_confidence: float = _parameter(
@@ -288,6 +317,7 @@ class Config(BaseModel):
         "thumb_down, wave, stop and come with commas between, such as palm, fist, point, wave. A "
         "raised hand that surely says something else is not raised then; one whose gesture is "
         "not sure may call.",
+        level="basic",
         group="gestures", live=True,
     )  # fmt: skip
     gesture_release: Literal[
@@ -310,6 +340,7 @@ class Config(BaseModel):
     depth_source: Literal["both", "scan", "depth"] = _parameter(
         "both", "What tells how far people are: scan (the LiDAR), depth (a depth camera) or both, "
         "as far as they come. Without depth images both is the same as scan.",
+        level="basic",
         group="ranging", live=True,
     )  # fmt: skip
     depth_std_m: float = _parameter(
@@ -327,11 +358,13 @@ class Config(BaseModel):
     )  # fmt: skip
     scan_max_age_s: float = _parameter(
         0.25, "A scan farther than this from the image's stamp is too old for it.",
+        level="basic",
         unit="s", group="ranging", live=True, gt=0.0, le=10.0,
     )  # fmt: skip
     leg_width_min_m: float = _parameter(
         0.02, "Person-sized: no segment of the scan thinner than this is a leg. Legs in trousers "
         "are .1 m wide and more; .075 leaves out most legs of chairs and tables, and bare ankles.",
+        level="basic",
         unit="m", group="ranging", live=True, ge=0.0, le=0.3,
     )  # fmt: skip
     body_width_m: float = _parameter(
@@ -348,6 +381,7 @@ class Config(BaseModel):
     )  # fmt: skip
     person_range_max_m: float = _parameter(
         8.0, "Nobody farther than this is ranged.",
+        level="basic",
         unit="m", group="ranging", live=True, gt=0.5, le=100.0,
     )  # fmt: skip
     scan_sustains: bool = _parameter(
@@ -362,6 +396,7 @@ class Config(BaseModel):
     use_map: bool = _parameter(
         True, "Where a map (nav_msgs/OccupancyGrid) says that something stands, what is "
         "person-sized in the scan is taken for furniture.",
+        level="basic",
         group="ranging", live=True,
     )  # fmt: skip
     range_std_m: float = _parameter(
@@ -497,6 +532,7 @@ class Config(BaseModel):
     delete_after_s: float = _parameter(
         2.0, "A customer whom neither hand nor scan has shown for so long, though in view, is "
         "gone.",
+        level="basic",
         unit="s", group="tracking", live=True, gt=0.0, le=3600.0,
         search=Search("life", 0.3, 6.0, log=True),
     )  # fmt: skip
@@ -507,6 +543,7 @@ class Config(BaseModel):
     )  # fmt: skip
     forget_after_s: float = _parameter(
         60.0, "A customer whose hand has not been up for so long is forgotten, seen or not.",
+        level="basic",
         unit="s", group="tracking", live=True, gt=0.0, le=86400.0,
     )  # fmt: skip
     same_person_distance_m: float = _parameter(
@@ -517,10 +554,12 @@ class Config(BaseModel):
     )  # fmt: skip
     raise_streak: int = _parameter(
         2, "Consecutive detections after which a hand counts as raised (algorithm 1).",
+        level="basic",
         unit="frames", group="tracking", live=True, ge=1, le=1000,
     )  # fmt: skip
     lower_streak: int = _parameter(
         3, "Consecutive misses after which it counts as lowered (algorithm 1).",
+        level="basic",
         unit="frames", group="tracking", live=True, ge=1, le=1000,
     )  # fmt: skip
 
@@ -528,15 +567,18 @@ class Config(BaseModel):
     selection: Literal["first", "nearest", "newest"] = _parameter(
         "first", "Who of several is served: whose hand went up first, who is nearest to the "
         "robot, or whose hand went up last. Whoever is chosen stays chosen while the hand is up.",
+        level="basic",
         group="selection", live=True,
     )  # fmt: skip
     selection_hold_s: float = _parameter(
         0.0, "How long the chosen customer stays chosen after the hand went down.",
+        level="basic",
         unit="s", group="selection", live=True, ge=0.0, le=3600.0,
     )  # fmt: skip
     pose_max_std_m: float = _parameter(
         0.5, "A pose is given only while the standard deviation that is published with it, along "
         "its worst axis, is below.",
+        level="basic",
         unit="m", group="selection", live=True, gt=0.0, le=10.0,
     )  # fmt: skip
     pose_max_age_s: float = _parameter(
@@ -545,6 +587,7 @@ class Config(BaseModel):
     )  # fmt: skip
     approach_distance_m: float = _parameter(
         0.8, "How far in front of the customer the approach pose stands.",
+        level="basic",
         unit="m", group="selection", live=True, gt=0.0, le=5.0,
     )  # fmt: skip
 
@@ -553,6 +596,7 @@ class Config(BaseModel):
         False, "The selected customer may be one whose hand has fallen and who waits to be "
         "served. Off: only whose hand is up is selected, as in the original node, while the "
         "waiting list keeps calls all the same.",
+        level="basic",
         group="service", live=True,
     )  # fmt: skip
     call_min_s: float = _parameter(
@@ -584,10 +628,12 @@ class Config(BaseModel):
     image_transport: Literal["raw", "compressed"] = _parameter(
         "raw", "How a node gets its images: raw (`image_raw`) or compressed "
         "(`image_raw/compressed`).",
+        level="basic",
         group="node",
     )  # fmt: skip
     dashboard_port: int = _parameter(
         0, "Port of the node's page for a browser (extra `live`); 0 serves none.",
+        level="basic",
         group="node", ge=0, le=65535,
     )  # fmt: skip
     dashboard_host: str = _parameter(
@@ -725,7 +771,7 @@ def allowed_values(name: str) -> str:
 
 
 def parameter_extra(name: str) -> dict[str, Any]:
-    """Unit, group, `live` (may it change while running) and `search` of a parameter."""
+    """Unit, group, `level`, `live` (may it change while running) and `search` of a parameter."""
     extra = Config.model_fields[name].json_schema_extra
     assert isinstance(extra, dict)
     return extra

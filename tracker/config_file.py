@@ -1,7 +1,8 @@
 """How does a user read the parameters? The default YAML file and the table of the documentation.
 
 Both are written from the one model in `tracker.config`; `make config` renews the committed file,
-and a test says when that was forgotten.
+and a test says when that was forgotten. Basic parameters come first everywhere, then the expert
+ones.
 """
 
 from __future__ import annotations
@@ -28,6 +29,9 @@ GROUP_TITLES = {
 }
 
 
+LEVEL_TITLES = {"basic": "Basic", "expert": "Expert"}
+
+
 def default_yaml() -> str:
     """The ROS parameter file of every default, with meaning, unit and range as comments."""
     return parameter_yaml(
@@ -45,12 +49,12 @@ def parameter_yaml(config: Config, title: str) -> str:
     """
     lines = [
         f"# {title}",
-        "# live: may change while the node runs.",
+        "# Basic parameters first, then the expert ones. live: may change while the node runs.",
         f"{NODE_NAME}:",
         "  ros__parameters:",
     ]
-    for group, names in _groups():
-        lines += ["", f"    # ---- {GROUP_TITLES[group]} ----"]
+    for level, group, names in grouped_parameters():
+        lines += ["", f"    # ---- {LEVEL_TITLES[level]}: {GROUP_TITLES[group]} ----"]
         for name in names:
             live = "; live" if parameter_extra(name)["live"] else ""
             words = wrap(_description(name), 90, break_on_hyphens=False)
@@ -59,10 +63,10 @@ def parameter_yaml(config: Config, title: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def markdown_table() -> str:
-    """One Markdown table per group of parameters."""
+def markdown_tables(level: str) -> str:
+    """One Markdown table per group of the parameters of a level."""
     parts = []
-    for group, names in _groups():
+    for _, group, names in filter(lambda item: item[0] == level, grouped_parameters()):
         rows = [
             f"| `{name}` | `{_written(name)}` | {allowed_values(name)} "
             f"| {'yes' if parameter_extra(name)['live'] else 'no'} | {_description(name)} |"
@@ -73,9 +77,16 @@ def markdown_table() -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _groups() -> list[tuple[str, list[str]]]:
-    grouped = groupby(Config.model_fields, key=lambda name: str(parameter_extra(name)["group"]))
-    return [(group, list(names)) for group, names in grouped]
+def grouped_parameters() -> list[tuple[str, str, list[str]]]:
+    """Level, group and names: all basic parameters, group by group, then all expert ones."""
+    keys = {name: _level_and_group(name) for name in Config.model_fields}
+    ordered = sorted(keys, key=lambda name: keys[name][0] != "basic")  # stable: groups stay whole
+    return [(*key, list(names)) for key, names in groupby(ordered, key=lambda name: keys[name])]
+
+
+def _level_and_group(name: str) -> tuple[str, str]:
+    extra = parameter_extra(name)
+    return extra["level"], extra["group"]
 
 
 def _description(name: str) -> str:
@@ -88,10 +99,21 @@ def _written(name: str) -> str:
 
 def markdown_page() -> str:
     """The page of the documentation that lists every parameter."""
-    return (
-        "# Parameters\n\nWritten from `tracker/config.py` by `make config`. Live: may change "
-        f"while the node runs.\n\n{markdown_table()}"
-    )
+    return f"""# Parameters
+
+Written from `tracker/config.py` by `make config`; `raised-hand parameters` shows the same in a
+terminal. Live: may change while the node runs.
+
+## {LEVEL_TITLES["basic"]}
+
+What a new robot, camera or room may need.
+
+{markdown_tables("basic")}
+## {LEVEL_TITLES["expert"]}
+
+The defaults mostly stay. `raised-hand tune` searches some of these: [Tuning](tuning.md).
+
+{markdown_tables("expert")}"""
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from tracker.errors import ConfigError
 
 def test_every_parameter_has_a_descriptor_with_its_default_meaning_and_unit():
     found = {item.name: item for item in descriptors()}
-    assert list(found) == list(Config.model_fields)
+    assert sorted(found) == sorted(Config.model_fields)
     for name, item in found.items():
         assert item.default == getattr(Config(), name)
         assert item.is_read_only == (not parameter_extra(name)["live"])
@@ -19,6 +19,12 @@ def test_every_parameter_has_a_descriptor_with_its_default_meaning_and_unit():
     assert rate.constraints == "a number above 0 and at most 240 (Hz)"
     assert found["ranging"].constraints == "one of person, spec"
     assert found["fixed_frame"].minimum is None
+
+
+def test_basic_parameters_come_first_and_the_others_say_that_they_are_for_experts():
+    is_expert = [parameter_extra(item.name)["level"] == "expert" for item in descriptors()]
+    assert is_expert == sorted(is_expert)
+    assert is_expert == [item.description.endswith(" (expert)") for item in descriptors()]
 
 
 def test_every_number_has_a_range_that_holds_its_default():

@@ -257,5 +257,5 @@ def test_every_parameter_has_a_description_a_group_and_a_stated_range():
     for name, info in Config.model_fields.items():
         assert info.description, name
         assert info.description.rstrip(".") != info.description or "..." in info.description, name
-        assert set(parameter_extra(name)) == {"unit", "group", "live", "search"}, name
+        assert set(parameter_extra(name)) == {"unit", "group", "level", "live", "search"}, name
         assert allowed_values(name), name

@@ -14,6 +14,7 @@ from tracker.cli.evaluate import evaluate_command
 from tracker.cli.live import live_command
 from tracker.cli.models import models_app
 from tracker.cli.monte_carlo import monte_carlo_command
+from tracker.cli.parameters import parameters_command
 from tracker.cli.play import echo_command, play_command
 from tracker.cli.replay import replay_command
 from tracker.cli.simulate import simulate_command
@@ -46,6 +47,7 @@ for _name, _command in (
     ("simulate", simulate_command),
     ("play", play_command),
     ("echo", echo_command),
+    ("parameters", parameters_command),
     ("evaluate", evaluate_command),
     ("monte-carlo", monte_carlo_command),
     ("tune", tune_command),

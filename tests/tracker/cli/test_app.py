@@ -1,4 +1,6 @@
 import json
+import os
+import subprocess
 import sys
 
 import cv2
@@ -31,6 +33,7 @@ def complaint(error):
         ("simulate",),
         ("monte-carlo",),
         ("tune",),
+        ("parameters",),
         ("evaluate",),
         ("models",),
         ("models", "fetch"),
@@ -68,6 +71,24 @@ def test_every_program_tells_its_version(run, capsys, monkeypatch, program):
         status, output = stopped.value.code, capsys.readouterr().out
     assert status == 0
     assert output == f"raised-hand-tracker {tracker.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [("raised-hand mon", "monte-carlo"), ("raised-hand parameters gate_", "gate_probability")],
+)
+def test_the_shell_completes_commands_and_parameters(typed, offered):
+    # A process of its own: completion goes by the name of the running program.
+    program = "import sys; sys.argv = ['raised-hand']; from tracker.cli.app import main; main()"
+    asked = {
+        "_RAISED_HAND_COMPLETE": "complete_bash",
+        "COMP_WORDS": typed,
+        "COMP_CWORD": str(len(typed.split()) - 1),
+    }
+    answer = subprocess.run(
+        [sys.executable, "-c", program], env=os.environ | asked, capture_output=True, text=True
+    )
+    assert (answer.stdout, answer.stderr) == (f"{offered}\n", "")
 
 
 def test_the_list_of_models_cuts_no_name(run):
