@@ -90,14 +90,17 @@ class Background:
         known = self._places.xy_m[self._places.is_background]
         return np.asarray((_distances(known, xy_m) < STILL_M).any(axis=0))
 
-    def log_person(self, clusters: PersonClusters) -> FloatArray:
-        """Log-probability that each cluster is a person, shape (C,).
+    def log_person(self, xy_m: FloatArray, log_odds: FloatArray) -> FloatArray:
+        """Log-probability that a person stands at each point, shape (C,).
 
-        By what it looks like, in all scans of its place, and by how long it has not moved, which
-        lasts for minutes where somebody sits.
+        By what it looks like, in all scans of its place, and by how long it has not
+        moved, which lasts for minutes where somebody sits.
+
+        Args:
+            xy_m: Shape (C, 2).
+            log_odds: Shape (C,): `PersonClusters.log_odds`; counts where the place is new.
         """
-        distance = _distances(clusters.xy_m, self._places.xy_m)
-        log_odds, stood_s = clusters.log_odds, np.zeros(len(clusters))
+        distance, stood_s = _distances(xy_m, self._places.xy_m), np.zeros(len(xy_m))
         if distance.size:
             place = distance.argmin(axis=1)
             is_known = distance.min(axis=1) < STILL_M

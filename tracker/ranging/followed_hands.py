@@ -33,16 +33,16 @@ class HandMeans:
     Attributes:
         heading_rad: Shape (H,): direction in the fixed frame, of the last image.
         seen_ns: Shape (H,): stamp of the last image.
-        palm_px: Shape (H,): length of the palm, mean.
-        breadth_px: Shape (H,): length told by the palm's breadth, mean.
+        palm_px2: Shape (H,): squared length of the palm, mean.
+        breadth_px2: Shape (H,): squared length told by the palm's breadth, mean.
         side: Shape (H,): `owner_side`, mean.
         images: Shape (H,): of how many images the means are worth, at least 1.
     """
 
     heading_rad: FloatArray
     seen_ns: IntArray
-    palm_px: FloatArray
-    breadth_px: FloatArray
+    palm_px2: FloatArray
+    breadth_px2: FloatArray
     side: FloatArray
     images: FloatArray
 
@@ -93,7 +93,7 @@ class FollowedHands:
         forgets = -np.expm1(-(stamp_ns - before.seen_ns) / 1e9 / _MEMORY_S)
         gain = np.maximum(1.0 / (before.images + 1.0), forgets)
         means = {"images": 1.0 / gain}
-        for name in ("palm_px", "breadth_px", "side"):
+        for name in ("palm_px2", "breadth_px2", "side"):
             last = getattr(before, name)
             means[name] = last + gain * (getattr(now, name) - last)
         columns = {item.name: getattr(seen, item.name).copy() for item in fields(seen)}
@@ -108,7 +108,7 @@ def _recognized(seen: HandMeans, known: HandMeans, stamp_ns: int) -> tuple[IntAr
     """Rows of `seen` and of `known` that are one hand."""
     turn_rad = np.abs(normalize_angle(seen.heading_rad[:, None] - known.heading_rad))
     turn = turn_rad / (_TURN_RAD + _TURN_RAD_PER_S * (stamp_ns - known.seen_ns) / 1e9)
-    growth = np.abs(np.log(seen.palm_px[:, None] / known.palm_px)) / np.log(_GROWTH)
+    growth = np.abs(np.log(seen.palm_px2[:, None] / known.palm_px2)) / (2.0 * np.log(_GROWTH))
     unlike = np.nan_to_num(np.hypot(turn, growth), nan=np.inf)
     row, was = linear_sum_assignment(np.minimum(unlike, 2.0))
     is_same = unlike[row, was] <= 1.0

@@ -102,7 +102,7 @@ def measure_people(
             range_m = range_along_rays(rays, scan, config.scan_window_beams, config.segment_jump_m)
     else:
         owners = memory.ownership.judge(
-            hands, rays, camera, people, background.log_person(people),
+            hands, rays, camera, people, background,
             Tracks.none(stamp_ns) if tracked is None else tracked, stamp_ns, config,
         )  # fmt: skip
         claimed, side = owners.cluster, owners.side

@@ -7,8 +7,8 @@ stands a to the left of the ray and r along it, the hand that raised says
 
 where s tells on which side the owner is (b: how far a hand is beside the body), r_hand is the
 range told by the palm, and A and B hold the spread among people, the noise, and how unsure the
-place is. Somebody whom nothing shows may be anywhere: p = rho r_hand, with rho such people per
-square meter.
+place is. Somebody whom nothing shows may be anywhere: p = rho r_hand, with the `newcomer_density`
+rho.
 What a hand says is a mean over all images in which it was followed, and P(person) gathers over all
 scans of a place; so a distribution sharpens with time.
 """
@@ -22,6 +22,7 @@ import numpy as np
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measurements, Tracks
+from tracker.ranging.background import Background
 from tracker.ranging.followed_hands import FollowedHands, HandMeans
 from tracker.ranging.people import PersonClusters
 from tracker.ranging.person_range import (
@@ -37,8 +38,6 @@ from tracker.ranging.person_range import (
 )
 from tracker.ranging.rays import HandRays
 
-#: So many people per square meter are hidden, or out of the laser's plane (guess).
-UNSEEN_PER_M2 = 0.03
 #: A cluster this close to where somebody tracked is expected shows them.
 SHOWN_M = 0.4
 #: The tracker is told so in log-odds: it would ask one image what all have answered.
@@ -87,7 +86,7 @@ class Ownership:
         rays: HandRays,
         camera: CameraModel,
         people: PersonClusters,
-        log_person: FloatArray,
+        background: Background,
         tracked: Tracks,
         stamp_ns: int,
         config: Config,
@@ -99,10 +98,10 @@ class Ownership:
             rays: Their directions.
             camera: Intrinsics of the full image.
             people: C clusters, in the fixed frame of the rays.
-            log_person: Shape (C,): log-probability that each is a person.
+            background: Tells how likely each place is a person's.
             tracked: Everybody at the last image; velocities carry them on.
             stamp_ns: The image's.
-            config: `arm_reach_m` and the spreads of where hands stand.
+            config: `arm_reach_m`, the spreads of where hands stand, and `newcomer_density`.
         """
         length_px, breadth_px = palms_px(hands)
         heading = rays.bearing_rad + rays.origin[2]
@@ -110,8 +109,8 @@ class Ownership:
             HandMeans(
                 heading_rad=heading,
                 seen_ns=np.full(len(hands), stamp_ns),
-                palm_px=length_px,
-                breadth_px=breadth_px,
+                palm_px2=length_px**2,
+                breadth_px2=breadth_px**2,
                 side=owner_side(hands, rays.roll_rad),
                 images=np.ones(len(hands)),
             ),
@@ -121,7 +120,9 @@ class Ownership:
         hidden, is_guess = self._hidden(tracked, people, stamp_ns)
         xy_m = np.concatenate([people.xy_m, hidden.xy_m])
         unsure_m2 = np.concatenate([np.zeros((len(people), 2, 2)), hidden.covariance_m2])
-        log_there = np.concatenate([log_person, hidden.log_existence])
+        by_shape = np.concatenate([people.log_odds, np.zeros(len(hidden.row))])
+        log_there = background.log_person(xy_m, by_shape)
+        log_there[len(people) :] += hidden.log_existence
 
         along, across = ray_coordinates(xy_m, rays.origin[:2], heading)
         is_beside = (along > 0.0) & (np.abs(across) <= config.arm_reach_m)
@@ -138,7 +139,7 @@ class Ownership:
         log_odds -= (
             log_ratio**2 / (2.0 * log2) + 0.5 * np.log(across_m2 * log2) + np.log(2 * np.pi)
         )
-        log_odds -= np.log(UNSEEN_PER_M2 * np.where(size, range_m[:, None], along))
+        log_odds -= np.log(config.newcomer_density * np.where(size, range_m[:, None], along))
         log_odds = np.where(is_beside, log_odds, -np.inf)
         best = np.full(len(hands), -1)
         if len(xy_m):
@@ -217,10 +218,15 @@ class _Hidden:
 def _ranges(means: HandMeans, camera: CameraModel) -> tuple[FloatArray, FloatArray]:
     """Range told by the palm, and its relative spread, each of shape (H,).
 
-    A palm that tilts away looks short but not slim: its breadth tells where that is more than the
-    breadth's own noise.
+    Noise makes short lengths look longer: |p|^2 is on average L^2 + 4 s^2 for two landmarks with
+    the standard deviation s per axis, which is taken off. A palm that tilts away looks short but
+    not slim: its breadth tells where that is more than the breadth's own noise.
     """
     noise_px = np.sqrt(2.0 / means.images) * LANDMARK_STD_PX
-    palm_px = np.maximum(means.palm_px, means.breadth_px - noise_px / PALM_BREADTH)
+    excess_px2 = 4.0 * LANDMARK_STD_PX**2
+    length_px = np.sqrt(np.maximum(means.palm_px2 - excess_px2, means.palm_px2 / 4.0))
+    breadth_px2 = means.breadth_px2 - excess_px2 / PALM_BREADTH**2
+    breadth_px = np.sqrt(np.maximum(breadth_px2, means.breadth_px2 / 4.0))
+    palm_px = np.maximum(length_px, breadth_px - noise_px / PALM_BREADTH)
     range_m = np.where(palm_px >= PALM_MIN_PX, range_of_palm_m(palm_px, camera), np.nan)
     return range_m, np.hypot(RANGE_SPREAD, noise_px / palm_px)

@@ -72,10 +72,8 @@ def test_two_slim_legs_are_no_background_sooner(watch):
     assert holds(background, (1.54, 0.5)) == [False]
 
 
-def log_person(background, width_m=0.12, legs=1, place=CHAIR):
-    one = np.ones(1)
-    cluster = PersonClusters(np.array([place]), width_m * one, np.array([legs]), 0.0 * one)
-    return float(background.log_person(cluster)[0])
+def log_person(background, log_odds=-0.7, place=CHAIR):
+    return float(background.log_person(np.array([place]), np.array([log_odds]))[0])
 
 
 def test_what_does_not_move_is_less_and_less_likely_a_person(watch):
@@ -90,8 +88,8 @@ def test_what_does_not_move_is_less_and_less_likely_a_person(watch):
 def test_a_place_remembers_what_it_looked_like(watch):
     background = Background()
     watch(background, [(1.5, 0.4, 0.05), (1.5, 0.6, 0.05)], 20)
-    seen_as_two = log_person(background, legs=1, place=(1.54, 0.5))
-    assert seen_as_two > log_person(Background(), legs=1) + 0.5
+    seen_as_two = log_person(background, place=(1.54, 0.5))
+    assert seen_as_two > log_person(Background()) + 0.5
 
 
 def test_a_customer_who_stands_still_never_becomes_background(watch):
