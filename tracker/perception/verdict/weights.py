@@ -15,7 +15,7 @@ import numpy as np
 from tracker.containers import FloatArray, IntArray, Refusal
 
 #: The log-odds of a hand of which every quantity is 0.
-BIAS = -3.51
+BIAS = -3.60
 
 
 class Weight(NamedTuple):
@@ -37,27 +37,27 @@ class Weight(NamedTuple):
 
 
 WEIGHTS = {
-    "found": Weight(1.03, 0.0),
-    "score": Weight(0.52, 1.0, 10.0, Refusal.UNSURE),
-    "rise": Weight(1.38, 2.0, 10.0),
-    "lean": Weight(-1.25, -1.0, reason=Refusal.LEANS),
-    "spread": Weight(0.16, 0.4, 5.0),
-    "thumb": Weight(-3.30, -2.0),
-    "owned": Weight(0.20, 0.0),
-    "unowned": Weight(-0.15, -1.0, reason=Refusal.OWNER_UNKNOWN),
-    "alone": Weight(1.72, 2.0),
-    "low": Weight(-4.41, -3.0, reason=Refusal.BELOW_SHOULDERS),
-    "palm_low": Weight(-2.21, -2.0, 5.0, Refusal.BELOW_SHOULDERS),
-    "high": Weight(3.88, 3.0),
-    "fist_low": Weight(-1.64, -2.0, reason=Refusal.BELOW_SHOULDERS),
-    "overhead": Weight(1.52, 2.0),
-    "forearm": Weight(3.76, 2.0, reason=Refusal.ARM_DOWN),
-    "head": Weight(-5.25, -8.0, 10.0, Refusal.AT_HEAD),
-    "inside": Weight(-2.08, -2.0, reason=Refusal.BEFORE_BODY),
-    "together": Weight(-2.01, -2.0, 10.0, Refusal.BEFORE_BODY),
-    "doubt": Weight(-1.09, -0.5, reason=Refusal.OWNER_UNKNOWN),
-    "faint": Weight(-4.69, -4.0, reason=Refusal.OWNER_UNKNOWN),
-    "apart": Weight(-1.04, -1.0, 10.0, Refusal.OWNER_UNKNOWN),
+    "found": Weight(1.00, 0.0),
+    "score": Weight(0.59, 1.0, 10.0, Refusal.UNSURE),
+    "rise": Weight(1.53, 2.0, 10.0),
+    "lean": Weight(-0.85, -1.0, reason=Refusal.LEANS),
+    "spread": Weight(0.13, 0.4, 5.0),
+    "thumb": Weight(-3.33, -2.0),
+    "owned": Weight(0.34, 0.0),
+    "unowned": Weight(-0.17, -1.0, reason=Refusal.OWNER_UNKNOWN),
+    "alone": Weight(1.65, 2.0),
+    "low": Weight(-4.55, -3.0, reason=Refusal.BELOW_SHOULDERS),
+    "palm_low": Weight(-2.28, -2.0, 5.0, Refusal.BELOW_SHOULDERS),
+    "high": Weight(4.61, 3.0),
+    "fist_low": Weight(-1.83, -2.0, reason=Refusal.BELOW_SHOULDERS),
+    "overhead": Weight(1.46, 2.0),
+    "forearm": Weight(3.74, 2.0, reason=Refusal.ARM_DOWN),
+    "head": Weight(-7.82, -8.0, 10.0, Refusal.AT_HEAD),
+    "inside": Weight(-1.94, -2.0, reason=Refusal.BEFORE_BODY),
+    "together": Weight(-2.02, -2.0, 10.0, Refusal.BEFORE_BODY),
+    "doubt": Weight(-1.21, -0.5, reason=Refusal.OWNER_UNKNOWN),
+    "faint": Weight(-4.86, -4.0, reason=Refusal.OWNER_UNKNOWN),
+    "apart": Weight(-1.05, -1.0, 10.0, Refusal.OWNER_UNKNOWN),
     "swing": Weight(3.00, 3.0, 10.0),
 }
 #: The names of the quantities, in the order of the columns.
