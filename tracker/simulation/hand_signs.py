@@ -155,7 +155,7 @@ def draw_hands(
         size_px: Range of the length of the open hand.
         noise: Range of the landmarks' error, as standard deviation in hand lengths.
         edge_on: Seen from the side of thumb or little finger, within 25 degrees, where a hand
-            says nothing: a finger before the lips is held so.
+            says nothing, unless it is a fist: a finger before the lips is held so.
     """
     stretch = rng.normal(1.0, 0.05, (count, 1)) * rng.normal(1.0, 0.04, (count, 20))
     pose = hold_pose(name, count, rng)
@@ -164,7 +164,7 @@ def draw_hands(
     tilt = np.radians(turn_max_deg)
     pitch, yaw = rng.uniform(-tilt, tilt, (2, count))
     if edge_on:
-        gesture[:] = _NONE
+        gesture[:] = Gesture.FIST if name == "fist" else _NONE
         yaw = np.radians(rng.uniform(65.0, 115.0, count))
     yaw = yaw + np.pi * rng.integers(2, size=count)
     seen = _turned(_turned(points, yaw, 0, 2), pitch, 1, 2)
