@@ -1,4 +1,5 @@
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from tracker import Config
 from tracker.geometry import RigidTransform
 from tracker.messages import Encoded, encode
 from tracker.messages.types import build, serialize
+from tracker.simulation.hand_signs import draw_hands
 from tracker.transforms import StampedTransform
 
 START_NS = 1_000_000_000_000
@@ -189,6 +191,23 @@ def test_one_transform_with_an_absurd_stamp_changes_nothing(wire):
     wire.diagnose()
     assert wire.diagnose()["transforms"].values["malformed"] == "2"
     assert wire.messages(Output.TRACKS)[-1].header.stamp.nanosec >= 7 * FRAME_NS
+
+
+def test_what_a_customer_says_is_told_once_and_taken_back(wire, monkeypatch):
+    see = wire.detector.find
+    fist = draw_hands(
+        "fist", 1, np.random.default_rng(5), turn_max_deg=3.0, size_px=(20.0, 20.1)
+    )  # fmt: skip
+
+    def shown(image):
+        return replace(see(image), landmarks_px=fist.landmarks_px + np.array([32.0, 24.0]))
+
+    monkeypatch.setattr(wire.detector, "find", shown)
+    play(wire, 31)
+    assert [message.data for message in wire.messages(Output.GESTURE)] == ["1 fist"]
+    wire.core.enable(False)
+    wire.settle()
+    assert [message.data for message in wire.messages(Output.GESTURE)] == ["1 fist", "1 none"]
 
 
 def test_two_customers_take_turns_by_release(wire):

@@ -694,13 +694,14 @@ def test_a_sign_that_does_not_call_is_nobody():
 
 def test_a_thumb_lets_the_served_customer_go():
     pipeline = signing("palm", gesture_release="thumb_up")
-    assert play(pipeline, 5)[-1].tracks.selected_id == 1
+    served = play(pipeline, 5)[-1].tracks.selected_id
+    assert served is not None
     pipeline.detector.sign = "thumb"
     results = play(pipeline, 10, START_NS + 5 * PERIOD_NS)
-    assert results[0].tracks.selected_id == 1
+    assert results[0].tracks.selected_id == served
     assert results[-1].tracks.gesture.tolist() == [Gesture.THUMB_UP]
     assert results[-1].tracks.selected_id is None, "and is not chosen again while the hand is up"
 
 
 def test_a_gesture_lets_nobody_go_unless_that_is_wanted():
-    assert play(signing("thumb"), 10)[-1].tracks.selected_id == 1
+    assert play(signing("thumb"), 10)[-1].tracks.selected_id is not None
