@@ -48,6 +48,7 @@ def tracks_at(frame, places):
         age_s=np.zeros(count),
         unseen_s=np.zeros(count),
         hand=np.full(count, -1),
+        gesture=np.zeros(count, dtype=np.int64),
     )
 
 
