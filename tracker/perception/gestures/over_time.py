@@ -21,7 +21,8 @@ from tracker.gesture import Gesture
 
 #: A sign is named from this probability on.
 SURE = 0.8
-#: What is believed of a hand that was never seen, by `model.SIGNS`: about the shares of the drawn hands.
+#: What is believed of a hand that was never seen, by `model.SIGNS`: about the shares of the drawn
+#: hands.
 PRIOR = np.array([4.0, 1.0, 1.0, 1.0, 1.0, 0.5, 0.5]) / 9.0
 #: How fast a belief fades to that; images of one hand are alike, and each adds this share of its
 #: evidence; none is surer than this.
