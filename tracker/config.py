@@ -278,6 +278,14 @@ class Config(BaseModel):
         )
     )  # fmt: skip
 
+    model_numbers: Literal["auto", "fp32", "int8"] = _parameter(
+        "auto", "What the models compute with on the processor: fp32 (single precision), int8 "
+        "(landmark and pose models partly in 8 bits, which moves landmarks by 0.3 % of the hand) "
+        "or auto: int8 where it is known to be faster (AVX-512 with VNNI), else fp32.",
+        level="basic",
+        group="perception",
+    )  # fmt: skip
+
     # What finds hands, and the second opinion of body poses.
     detector: Literal["hands", "pose", "mediapipe"] = _parameter(
         "hands", "What finds raised hands: hands (MediaPipe's hand models on ONNX Runtime), pose "

@@ -26,6 +26,7 @@ def finder(request, model_store):
         downscale_factor=1,
         search_regions_per_frame=1,
         search_lean_max_deg=180.0,
+        model_numbers="fp32",
     )
     return HandFinder(config, model_store)
 
