@@ -13,14 +13,13 @@ SOURCES = sorted((ROOT / "tracker").rglob("*.py"))
 
 #: From the ground up. A file may import its own room and the floors below, never its neighbors.
 FLOORS = [
-    {"errors", "closing", "notes", "clock_offset", "gesture", "user_cache", "wording"},
-    {"outputs", "yaml_reading", "program"},
-    {"parameter_file", "retired_parameters"},
+    {"errors", "closing", "notes", "gesture", "user_cache", "wording"},
+    {"outputs", "parameters"},
     {"containers", "config"},
     {"geometry", "config_file", "lens"},
     {"camera", "transforms", "compiling", "service"},
-    {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
-    {"problems", "picture_camera", "locating"},
+    {"perception", "ranging", "tracking", "messages", "waiting"},
+    {"problems", "locating"},
     {"depth_sense"},
     {"pipeline", "recording"},
     {"simulation"},
@@ -30,9 +29,9 @@ FLOORS = [
     {"evaluation.studies"},
     {"evaluation.detection", "evaluation.tuning"},
     {"report"},
-    {"replay_outputs", "dashboard"},
+    {"dashboard"},
     {"replay", "live"},
-    {"progress", "command_help"},
+    {"terminal"},
     {"cli"},
 ]
 FLOOR_OF = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
