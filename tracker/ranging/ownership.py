@@ -22,9 +22,7 @@ import numpy as np
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measurements, Tracks
-from tracker.ranging.background import Background
 from tracker.ranging.followed_hands import FollowedHands, HandMeans
-from tracker.ranging.people import PersonClusters
 from tracker.ranging.person_range import (
     BESIDE_M,
     LANDMARK_STD_PX,
@@ -37,6 +35,8 @@ from tracker.ranging.person_range import (
     ray_coordinates,
 )
 from tracker.ranging.rays import HandRays
+from tracker.ranging.scan.background import Background
+from tracker.ranging.scan.people import PersonClusters
 
 #: A cluster this close to where somebody tracked is expected shows them.
 SHOWN_M = 0.4
