@@ -5,7 +5,7 @@
 
 The detector looks at drawn callers; what its models are given is kept. In each block that computes
 in 8 bits the range of what it reads is measured, and what its output lacks on average, block after
-block. `--write` puts that into `tracker/perception/models/int8_ranges.npz`; raise
+block. `--write` puts that into `tracker/perception/models/int8/ranges.npz`; raise
 `CONVERTER_VERSION` with it. Drawn people of another seed, and photos, say how far the results move
 from those in single precision. No real picture takes part in the fit.
 """
@@ -32,8 +32,8 @@ from tracker.evaluation.detection.scenes import caller_scene, draw_conditions
 from tracker.perception import open_detector
 from tracker.perception.models import ModelStore
 from tracker.perception.models.catalog import INT8_MODELS
-from tracker.perception.models.int8_ranges import load_ranges, save_ranges
-from tracker.perception.models.quantize import Block, BlockRange, find_blocks, quantize
+from tracker.perception.models.int8.quantize import Block, BlockRange, find_blocks, quantize
+from tracker.perception.models.int8.ranges import load_ranges, save_ranges
 from tracker.simulation import simulate
 
 FIT_SEED, CHECK_SEED = 7001, 7002

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from nodes.topics import (
+from nodes.shared.topics import (
     ENABLE_SERVICE,
     INPUT_TOPICS,
     OUTPUT_TYPES,

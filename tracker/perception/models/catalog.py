@@ -44,7 +44,7 @@ class ModelEntry:
         input_range: Smallest and largest pixel value expected, for black and white.
         outputs: The outputs to keep, in order; what only feeds others is left out.
         size_is_free: Height and width may be any multiple of 32, not only `size_px`.
-        in_bytes: Some of it computes in 8 bits (see `quantize`).
+        in_bytes: Some of it computes in 8 bits (see `int8`).
     """
 
     name: str

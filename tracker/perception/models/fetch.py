@@ -55,8 +55,8 @@ def fetch_models(
     # Imported late: with onnx and tflite it takes most of a second, in vain if the above fails,
     # and whoever only wants a model's path would pay for it, too.
     from tracker.perception.models.convert import convert_tflite
-    from tracker.perception.models.int8_ranges import load_ranges
-    from tracker.perception.models.quantize import quantize
+    from tracker.perception.models.int8.quantize import quantize
+    from tracker.perception.models.int8.ranges import load_ranges
 
     report("convert", 0, len(MODELS))
     for done, entry in enumerate(MODELS, start=1):
