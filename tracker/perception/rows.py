@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 T = TypeVar("T", bound="Rows")
+A = TypeVar("A", bound=np.ndarray[Any, Any])
 
 
 class Rows:
     """A frozen dataclass with slots; row i of each of its arrays is the same thing."""
 
-    __slots__: tuple[str, ...] = ()
+    # What `kept` has computed; a subclass' own slots are its fields.
+    __slots__: tuple[str, ...] = ("_kept",)
+    _kept: dict[Any, Any]
 
     def __len__(self) -> int:
         return len(getattr(self, self.__slots__[0]))
@@ -26,3 +30,22 @@ class Rows:
         return cls(
             *(np.concatenate([getattr(part, name) for part in parts]) for name in cls.__slots__)
         )
+
+
+class kept(Generic[A]):
+    """A property whose array is computed once for each batch, and read-only from then on."""
+
+    def __init__(self, compute: Callable[[Any], A]) -> None:
+        self._compute = compute
+        self.__doc__ = compute.__doc__
+
+    def __get__(self, rows: Rows, kind: type) -> A:
+        try:
+            arrays: dict[kept[A], A] = rows._kept
+        except AttributeError:
+            arrays = {}
+            object.__setattr__(rows, "_kept", arrays)
+        if self not in arrays:
+            arrays[self] = self._compute(rows)
+            arrays[self].flags.writeable = False
+        return arrays[self]

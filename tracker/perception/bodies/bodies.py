@@ -10,7 +10,7 @@ import numpy as np
 from tracker.containers import BoolArray, FloatArray
 from tracker.errors import ShapeError
 from tracker.perception.regions import first_of_each
-from tracker.perception.rows import Rows
+from tracker.perception.rows import Rows, kept
 
 #: Points seen with less are taken for unknown; a guess between 0.3, usual for COCO's models, and
 #: MediaPipe's 0.5.
@@ -123,7 +123,7 @@ class Bodies(Rows):
         rise_px = self.points_px[:, SHOULDERS, 1] - self.points_px[:, WRISTS, 1]
         return np.asarray(seen & (rise_px > -_ABOUT_LEVEL * self.shoulder_px[:, None]))
 
-    @property
+    @kept
     def is_visible(self) -> BoolArray:
         """Shape (P, 17): points that may be relied upon."""
         finite = np.isfinite(self.points_px).all(axis=-1)
@@ -137,16 +137,16 @@ class Bodies(Rows):
         seen = self.is_visible[:, joints].all(axis=1)
         return np.asarray(seen & (rise_px < _NOSE_RISE * self.shoulder_px))
 
-    @property
+    @kept
     def torso_px(self) -> FloatArray:
         """Shape (P, 2): the middle of shoulders and hips, of the shoulders where no hip is seen.
 
         NaN where a shoulder is missing.
         """
-        shoulders, hips = self._shoulders_px(), self._middle_of(HIPS)
+        shoulders, hips = self._shoulders_px, self._middle_of(HIPS)
         return np.where(np.isnan(hips), shoulders, (shoulders + hips) / 2)
 
-    @property
+    @kept
     def shoulder_px(self) -> FloatArray:
         """Shape (P,): the shoulders' width, the yardstick of a body; NaN where one is missing.
 
@@ -154,7 +154,7 @@ class Bodies(Rows):
         far from the head as the other. Somebody who stands sideways is measured by the trunk
         instead, where hips are seen.
         """
-        shoulders, hips = self._shoulders_px(), self._middle_of(HIPS)
+        shoulders, hips = self._shoulders_px, self._middle_of(HIPS)
         width = 2.0 * np.linalg.norm(self.points_px[:, SHOULDERS[0]] - shoulders, axis=-1)
         trunk = np.linalg.norm(hips - shoulders, axis=-1)
         wider = np.fmax(width, _SHOULDERS_PER_TRUNK * trunk)
@@ -163,13 +163,14 @@ class Bodies(Rows):
     @property
     def seated(self) -> FloatArray:
         """Shape (P,), in [0, 1]: whether somebody sits; NaN where hips or knees are not seen."""
-        shoulders = self._shoulders_px()
+        shoulders = self._shoulders_px
         hips, knees = self._middle_of(HIPS), self._middle_of(KNEES)
         trunk = np.linalg.norm(hips - shoulders, axis=-1)
         fall = (knees - hips)[:, 1] / np.where(trunk > 0.0, trunk, np.nan)
         share = (_KNEES_OF_STANDING - fall) / (_KNEES_OF_STANDING - _KNEES_OF_SEATED)
         return np.asarray(np.clip(share, 0.0, 1.0))
 
+    @kept
     def _shoulders_px(self) -> FloatArray:
         """Shape (P, 2): the middle of both shoulders, NaN where one is missing."""
         seen = self.is_visible
