@@ -45,7 +45,6 @@ LEFT_FLOAT = {
     "hand_landmark_lite": 3,
     "hand_landmark_full": 1,
     "pose_detection": 1,
-    "pose_landmark_full": 4,
 }
 #: A hand of which the model in single precision is so sure must not be lost.
 SURE, LOST = 0.8, 0.5
@@ -186,12 +185,9 @@ def check(name: str, plain: bytes, quantized: bytes, images: list[np.ndarray]) -
         points = [found[0][rows, best, 4:].reshape(len(best), -1, 2) for found in (before, after)]
     else:
         score = [found[1].reshape(len(images)) for found in (before, after)]
-        values = 3 if name.startswith("hand") else 5
-        points = [
-            found[0].reshape(len(images), -1, values)[:, :21, :2] for found in (before, after)
-        ]
+        points = [found[0].reshape(len(images), 21, 3)[:, :, :2] for found in (before, after)]
     sure = score[0] >= SURE
-    # A hand is half as long as its region; so is a person's torso, roughly.
+    # A hand is half as long as its region.
     moved = np.linalg.norm(points[0] - points[1], axis=-1)[sure].mean(axis=1) / (side / 2)
     median, p95 = np.percentile(moved, (50, 95)) if sure.any() else (np.nan, np.nan)
     return [

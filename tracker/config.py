@@ -280,7 +280,8 @@ class Config(BaseModel):
 
     model_numbers: Literal["auto", "fp32", "int8"] = _parameter(
         "auto", "What the models compute with on the processor: fp32 (single precision), int8 "
-        "(landmark and pose models partly in 8 bits, which moves landmarks by 0.3 % of the hand) "
+        "(hands' landmarks and the search for people partly in 8 bits, which moves landmarks by "
+        "0.3 % of the hand) "
         "or auto: int8 where it is known to be faster (AVX-512 with VNNI), else fp32.",
         level="basic",
         group="perception",
