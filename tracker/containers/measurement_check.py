@@ -279,9 +279,8 @@ def _extreme_eigenvalues(symmetric: FloatArray) -> tuple[FloatArray, FloatArray]
     In closed form for two dimensions, as every frame asks for them.
     """
     if symmetric.shape[1:] != (2, 2):
-        values = np.linalg.eigvalsh(symmetric)
+        values = np.asarray(np.linalg.eigvalsh(symmetric), dtype=np.float64)
         return values[:, 0], values[:, -1]
     first, second, mixed = symmetric[:, 0, 0], symmetric[:, 1, 1], symmetric[:, 1, 0]
-    middle = (first + second) / 2.0
-    half: FloatArray = np.hypot((first - second) / 2.0, mixed)
-    return middle - half, middle + half
+    middle, half = (first + second) / 2.0, np.hypot((first - second) / 2.0, mixed)
+    return np.asarray(middle - half), np.asarray(middle + half)
