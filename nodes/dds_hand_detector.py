@@ -39,7 +39,7 @@ from tracker.command_help import VersionOption, help_of
 from tracker.config import NODE_NAME, Config
 from tracker.errors import ConfigError, TrackerError
 from tracker.messages import Encoded
-from tracker.messages.encode import header
+from tracker.messages.parts import header
 from tracker.messages.types import build, deserialize, serialize
 from tracker.parameter_file import is_ours, read_assignment, read_parameters
 from tracker.program import run_program

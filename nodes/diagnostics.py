@@ -20,7 +20,7 @@ from tracker.clock_offset import ClockOffset
 from tracker.config import Config
 from tracker.containers import FrameResult, PerceptionWork
 from tracker.messages import Encoded
-from tracker.messages.encode import header
+from tracker.messages.parts import header
 from tracker.messages.types import build, serialize
 from tracker.notes import NoteKind
 from tracker.scan_use import ScanUse

@@ -146,3 +146,8 @@ class FrameResult:
     frame_id: str | None = None
     work: PerceptionWork | None = None
     waiting_list: WaitingList = field(default_factory=WaitingList)
+
+    @property
+    def is_on_floor(self) -> bool:
+        """Whether z = 0 of `frame_id` is the floor: not in a frame that begins at the camera."""
+        return self.sensor_pose is not None and bool(np.any(self.sensor_pose))

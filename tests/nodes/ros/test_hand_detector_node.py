@@ -348,6 +348,37 @@ def test_the_example_waiter_serves_who_calls_and_who_is_unknown_is_refused(
     player.kill()
 
 
+@pytest.mark.parametrize("module", ["nodes.hand_detector", "nodes.dds_hand_detector"])
+def test_ros_reads_in_tracks_since_when_a_hand_is_up_and_how_fast_its_owner_walks(
+    ear, start_node, play, module
+):
+    from rclpy.serialization import deserialize_message
+    from vision_msgs.msg import Detection3DArray
+
+    start_node(module=module)
+    player = play("--start-offset", 2)
+
+    def last(output):
+        heard = ear.heard[output]
+        return (
+            deserialize_message(bytes(heard[-1][1]), Detection3DArray).detections if heard else []
+        )
+
+    ear.until(lambda: last(Output.RAISED_HANDS) and last(Output.TRACKS))
+    player.kill()
+    (person,), (raised,) = last(Output.TRACKS), last(Output.RAISED_HANDS)
+    words = {result.hypothesis.class_id.partition("/")[0]: result for result in person.results}
+    since = words["raised_since"].hypothesis.class_id.partition("/")[2]
+    assert since == f"{raised.header.stamp.sec}.{raised.header.stamp.nanosec:09d}"
+    assert float(words["age_s"].hypothesis.class_id.partition("/")[2]) > 0.0
+    assert np.hypot(*_xy(words["velocity"])) < 2.0
+    assert person.results[0].pose.covariance[35] == pytest.approx(np.pi**2 / 3)
+
+
+def _xy(result):
+    return result.pose.pose.position.x, result.pose.pose.position.y
+
+
 def test_a_simulated_clock_that_jumps_back_resets(ear, start_node):
     from rosgraph_msgs.msg import Clock
 
