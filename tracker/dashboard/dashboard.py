@@ -18,6 +18,7 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult
 from tracker.dashboard.health import Health
+from tracker.dashboard.map_picture import MapPicture
 from tracker.dashboard.memory import Memory
 from tracker.dashboard.parameters import changed, live_parameters
 from tracker.errors import TrackerError
@@ -71,6 +72,7 @@ class Dashboard:
         self._latest: tuple[CameraImage, FrameResult] | None = None
         self._number = 0
         self._memory, self._health = Memory(), Health()
+        self._map: MapPicture | None = None
         self._orders: deque[Callable[[], None]] = deque()
         self._said: deque[str] = deque(maxlen=5)
         self._shown: Shown | None = None
@@ -88,6 +90,9 @@ class Dashboard:
             self._memory.add(result)
             self._health.add(result, busy_s)
             self._number += 1
+            if result.room_map is not None:
+                before = self._map or MapPicture(1, result.room_map.grid)
+                self._map = before.after(result.room_map)
         self.follow_orders()
 
     def follow(self, config: Config) -> None:
@@ -129,15 +134,22 @@ class Dashboard:
                     return self._shown
                 past = self._memory.timeline()
                 trails = {one: self._memory.trail(one) for one in result.tracks.id.tolist()}
-                health = self._health.lines()
+                health, room_map = self._health.lines(), self._map
             state = _state(result, trails) | {
                 "timeline": past,
                 "health": health,
                 "said": list(self._said),
                 "frame": number,
             }
+            if result.room_map is not None and room_map is not None:
+                state["map"] = room_map.place(result.room_map)
             self._shown = Shown(number, state, self._draw(image, result))
             return self._shown
+
+    def map_png(self) -> bytes | None:
+        """The picture of the newest map; None without one."""
+        newest = self._map
+        return None if newest is None else newest.png()
 
     def _draw(self, image: CameraImage, result: FrameResult) -> bytes:
         factor = max(1, -(-image.width // _WIDTH_PX))

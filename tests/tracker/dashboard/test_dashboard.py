@@ -25,6 +25,20 @@ def test_a_frame_is_json_and_a_jpeg(watched):
     assert picture.shape == (480, 640, 3)
 
 
+def test_the_map_has_a_number_and_a_place_and_its_picture_is_asked_for(watched):
+    watched.run(1)
+    assert "map" not in watched.dashboard.show().state
+    assert watched.dashboard.map_png() is None
+    watched.mount()
+    watched.run(2)
+    first = watched.dashboard.show().state["map"]
+    assert first == {"number": 1, "origin": [0.0, -1.0, 0.0], "pixel_m": pytest.approx(0.1)}
+    assert watched.dashboard.map_png()[:4] == b"\x89PNG"
+    watched.mount()
+    watched.run(1)
+    assert watched.dashboard.show().state["map"]["number"] == 2
+
+
 def test_a_frame_is_drawn_once_for_all_browsers(watched):
     watched.run(3)
     assert watched.dashboard.show() is watched.dashboard.show()

@@ -7,6 +7,7 @@ class Room {
   constructor(canvas) {
     this.canvas = canvas;
     this.bounds = null; // xmin, xmax, ymin, ymax in the map; follows what there is to see, slowly
+    this.plan = { number: 0, picture: null }; // the map of the room, fetched once for each
   }
 
   draw(state) {
@@ -25,6 +26,7 @@ class Room {
       height / 2 - (x - (xmin + xmax) / 2) * scale,
     ];
     this.grid(pen, at, width, height);
+    if (state.map) this.map(pen, at, state.map, scale, dense);
     pen.fillStyle = color("soft");
     for (const [x, y] of state.scan) {
       const [left, top] = at(x, y);
@@ -35,6 +37,24 @@ class Room {
       if (!caller.in_sight && ["waiting", "being_served"].includes(caller.state)) this.lost(pen, at, caller);
     }
     for (const person of state.people) this.person(pen, at, person, scale, state.callers);
+  }
+
+  // Row and column of the picture run along the map's own axes, which may be turned.
+  map(pen, at, { number, origin: [x, y, yaw], pixel_m }, scale, dense) {
+    if (this.plan.number !== number) {
+      const token = new URLSearchParams(location.search).get("token");
+      this.plan = { number, picture: new Image() };
+      this.plan.picture.src = `map.png?number=${number}${token ? `&token=${encodeURIComponent(token)}` : ""}`;
+    }
+    const picture = this.plan.picture;
+    if (!picture.complete || !picture.naturalWidth) return;
+    const [left, top] = at(x, y), along = pixel_m * scale * Math.cos(yaw), across = pixel_m * scale * Math.sin(yaw);
+    pen.save();
+    pen.transform(-across, -along, -along, across, left, top);
+    pen.imageSmoothingEnabled = pixel_m * scale * dense < 1;
+    pen.globalAlpha = .55;
+    pen.drawImage(picture, 0, 0);
+    pen.restore();
   }
 
   follow(state) {
