@@ -3,9 +3,11 @@
 On the wire what is published is kept, and time stands still until told.
 """
 
+import importlib.util
 import threading
 import time
 from functools import cache
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,6 +25,7 @@ from tracker.replay import replay
 from tracker.simulation import load_scene, write_simulation
 from tracker.transforms import StampedTransform
 
+ROOT = Path(__file__).parents[2]
 START_NS = 1_000_000_000_000
 FRAME_NS = 33_333_333
 
@@ -181,3 +184,26 @@ def replayed(recording, tmp_path_factory, model_store):
         return SimpleNamespace(raised=raised, xy=xy)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def waiter_class():
+    """`Waiter` of examples/waiter.py, which knows no ROS."""
+    spec = importlib.util.spec_from_file_location("waiter", ROOT / "examples/waiter.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.Waiter
+
+
+@pytest.fixture(scope="session")
+def scene_recording(tmp_path_factory):
+    """A scene by its name, and its recording as `raised-hand demo` makes it."""
+
+    @cache
+    def record(name):
+        scene = load_scene(name)
+        path = tmp_path_factory.mktemp("scene") / f"{name}.mcap"
+        write_simulation(scene, path, seed=1, jpeg_quality=92)
+        return scene, path
+
+    return record
