@@ -24,6 +24,7 @@ from tracker.dashboard.parameters import changed, live_parameters
 from tracker.errors import TrackerError
 from tracker.geometry import worst_std
 from tracker.report.debug_picture import draw_debug_image
+from tracker.report.fan import PLACED_STD_M, fan
 from tracker.service import Answer, Command
 
 #: Pictures for the page are at most so wide, and a scan has so many points.
@@ -180,7 +181,7 @@ def _state(result: FrameResult, trails: dict[int, list[tuple[float, float]]]) ->
     """A frame in JSON's kinds of values; meters, radians and seconds."""
     tracks = result.tracks[result.tracks.confirmed]
     calls = result.waiting_list
-    people = []
+    people: list[dict[str, Any]] = []
     for row, track_id in enumerate(tracks.id.tolist()):
         covariance = tracks.covariance[row, :2, :2]
         people.append(
@@ -195,6 +196,9 @@ def _state(result: FrameResult, trails: dict[int, list[tuple[float, float]]]) ->
                 "trail": trails.get(track_id, []),
             }
         )
+        if worst_std(covariance) > PLACED_STD_M and result.sensor_pose is not None:
+            sides = fan(tracks.mean[row, :2], covariance, result.sensor_pose[:2])
+            people[-1]["fan"] = [round(side, 3) for side in sides]
     callers = [
         {
             "id": caller.id,

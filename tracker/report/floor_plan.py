@@ -63,7 +63,8 @@ def draw_floor_plan(
     _draw_paths(axes, history.people.values(), shown)
     for track_id in sorted(shown):
         _draw_person(axes, history.people[track_id], 0.06 * size_m)
-    _draw_key(axes, history.people.values(), truth)
+    has_walls = len(history.walls.hits[0]) > 0
+    _draw_key(axes, history.people.values(), truth, has_walls=has_walls)
     axes.set_title(
         "Who raised a hand, and where", loc="left", fontsize=13, color=INK, weight="bold", pad=8
     )
@@ -188,7 +189,9 @@ def _draw_pin(axes: Axes, xy_m: FloatArray, color: str, *, is_lit: bool) -> None
     axes.scatter(x, y, s=165, marker=HAND, c=PAPER, linewidths=0, zorder=11.5, transform=above)
 
 
-def _draw_key(axes: Axes, people: Collection[Person], truth: EpisodeReport | None) -> None:
+def _draw_key(
+    axes: Axes, people: Collection[Person], truth: EpisodeReport | None, *, has_walls: bool
+) -> None:
     def dot(label: str, **style: Any) -> Line2D:
         return Line2D([], [], ls="none", label=label, **style)
 
@@ -211,8 +214,9 @@ def _draw_key(axes: Axes, people: Collection[Person], truth: EpisodeReport | Non
         dot("the camera, at the end", marker="^", mfc=ROBOT, mec="none", ms=9),
         Line2D([], [], color=FADED, lw=0.9, ls=(0, (4, 3)), label="what it sees at the end"),
         Patch(fc="#fbf3da", ec="none", label="what it has seen"),
-        dot("hit by the laser scan", marker="s", mfc=WALL, mec="none", ms=4),
     ]
+    if has_walls:
+        handles.append(dot("hit by the laser scan", marker="s", mfc=WALL, mec="none", ms=4))
     if truth is not None:
         handles.append(dot("where the person really\nwas", marker="o", mfc="none", mec=INK, ms=8))
     key = axes.legend(

@@ -36,7 +36,7 @@ class Room {
     for (const caller of state.callers) {
       if (!caller.in_sight && ["waiting", "being_served"].includes(caller.state)) this.lost(pen, at, caller);
     }
-    for (const person of state.people) this.person(pen, at, person, scale, state.callers);
+    for (const person of state.people) this.person(pen, at, person, scale, state.callers, state.robot);
   }
 
   // Row and column of the picture run along the map's own axes, which may be turned.
@@ -58,7 +58,7 @@ class Room {
   }
 
   follow(state) {
-    const places = [...state.people, ...state.callers.filter((one) => ["waiting", "being_served"].includes(one.state))];
+    const places = [...state.people.filter((one) => !one.fan), ...state.callers.filter((one) => ["waiting", "being_served"].includes(one.state))];
     const xs = places.map((one) => one.x), ys = places.map((one) => one.y);
     const [x, y] = state.robot || [0, 0];
     for (const [px, py] of state.scan) if (Math.hypot(px - x, py - y) < 6) { xs.push(px); ys.push(py); }
@@ -94,11 +94,14 @@ class Room {
     pen.restore();
   }
 
-  person(pen, at, person, scale, callers) {
+  person(pen, at, person, scale, callers, robot) {
     const shade = color(person.selected ? "selected" : person.up ? "up" : "down");
-    const [left, top] = at(person.x, person.y);
+    const known = callers.find((one) => one.track === person.id);
+    const name = `#${known ? known.id : person.id}${person.up ? " up" : ""}`;
     pen.strokeStyle = pen.fillStyle = shade;
     pen.lineWidth = 2;
+    if (person.fan && robot) return this.fan(pen, at, person.fan, robot, scale, name, shade);
+    const [left, top] = at(person.x, person.y);
     pen.globalAlpha = .5;
     pen.beginPath();
     person.trail.forEach(([x, y], i) => pen[i ? "lineTo" : "moveTo"](...at(x, y)));
@@ -113,8 +116,21 @@ class Room {
     pen.beginPath();
     pen.arc(left, top, 6, 0, 2 * Math.PI);
     pen.fill();
-    const known = callers.find((one) => one.track === person.id);
-    this.label(pen, left, top, `#${known ? known.id : person.id}${person.up ? " up" : ""}`, shade);
+    this.label(pen, left, top, name, shade);
+  }
+
+  // A direction without a distance.
+  fan(pen, at, [right, left], [x, y], scale, name, shade) {
+    const [across, top] = at(x, y), reach = 2 * scale, middle = (right + left) / 2;
+    pen.beginPath();
+    pen.moveTo(across, top);
+    pen.arc(across, top, reach, -left - Math.PI / 2, -right - Math.PI / 2);
+    pen.closePath();
+    pen.globalAlpha = .25;
+    pen.fill();
+    pen.globalAlpha = 1;
+    pen.stroke();
+    this.label(pen, across - reach * Math.sin(middle), top - reach * Math.cos(middle), name, shade);
   }
 
   lost(pen, at, caller) {
