@@ -32,8 +32,6 @@ INPUTS = {
 LATE_NS = 100_000_000
 STEP_NS = 100_000_000
 SERVICE_S = 4.0
-#: A raise counts when it was up for so long before its owner is served (two images and a margin).
-TO_NOTICE_S = 0.5
 
 
 class TapedDetector:
@@ -167,62 +165,33 @@ class Day:
             self.answers.append(deserialize(*message).data)
 
 
-def expected(scene, service_s):
-    """Who is to be served, in order, by the scene's own words.
-
-    The first who called is served first. A raise before the end of that service belongs to it, a
-    later one is a new call.
-    """
-    raises = sorted((span.from_s, person.id) for person in scene.people for span in person.raises)
-    served, free_s = [], 0.0
-    over_s = {}
-    while raises:
-        at_s, person = raises.pop(0)
-        if at_s < over_s.get(person, 0.0):
-            continue
-        served.append(person)
-        free_s = max(free_s, at_s + TO_NOTICE_S) + service_s
-        over_s[person] = free_s
-    return served
-
-
 @pytest.fixture(scope="module", params=["restaurant", "bistro"])
-def room(request, scene_recording):
-    """A scene, its recording, and the detector that has seen it."""
-    return *scene_recording(request.param), TapedDetector()
-
-
-def served_people(scene, day):
-    """The scene's people whom the numbers stand for, by their places."""
-    ids = [person.id for person in scene.people]
-    xy_m = np.array([(person.path[0].x_m, person.path[0].y_m) for person in scene.people])
-    found = []
-    for number in day.waiter.served:
-        away_m = np.linalg.norm(xy_m - day.places[number], axis=1)
-        assert away_m.min() < 0.6, f"#{number} at {day.places[number]} is nobody"
-        found.append(ids[int(away_m.argmin())])
-    return found
+def room(request, guests_of, scene_recording):
+    """A scene's guests, its recording, and the detector that has seen it."""
+    scene, path = scene_recording(request.param)
+    return guests_of(scene), path, TapedDetector()
 
 
 @pytest.mark.parametrize("drive_s", [11.0, 18.0])
 def test_everybody_who_called_is_served_once_in_order(room, waiter_class, drive_s):
-    scene, path, detector = room
+    guests, path, detector = room
     day = Day(path, detector, waiter_class, drive_s).run()
-    assert served_people(scene, day) == expected(scene, drive_s + SERVICE_S)
+    assert guests.known_as(day.waiter.served, day.places) == guests.order(drive_s + SERVICE_S)
     done = [f"{verb} {number}" for number in day.waiter.served for verb in ("serve", "served")]
     assert [answer.partition(":")[0] for answer in day.answers] == done
     assert all(": done: " in answer for answer in day.answers)
 
 
 def test_in_two_visits_the_bar_lies_between_and_the_customer_is_the_same(room, waiter_class):
-    scene, path, detector = room
+    guests, path, detector = room
     bar = build(
         "geometry_msgs/msg/Pose",
         position=build("geometry_msgs/msg/Point", x=-1.0, y=1.0, z=0.0),
         orientation=build("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=0.0, w=1.0),
     )
     day = Day(path, detector, waiter_class, 11.0, bar=bar).run()
-    assert served_people(scene, day) == expected(scene, 3 * (11.0 + SERVICE_S))
-    order, at_bar, delivery = day.visits[::3], day.visits[1::3], day.visits[2::3]
+    order = guests.order(3 * (11.0 + SERVICE_S))
+    assert guests.known_as(day.waiter.served, day.places) == order
+    visit, at_bar, delivery = day.visits[::3], day.visits[1::3], day.visits[2::3]
     assert set(at_bar) == {(-1.0, 1.0)}
-    assert np.abs(np.subtract(order, delivery)).max() < 0.4
+    assert np.abs(np.subtract(visit, delivery)).max() < 0.4
