@@ -64,7 +64,7 @@ def draw_filter(error: Axes, nees: Axes, study: FilterStudy) -> None:
     nees.axhline(4.0, color=FADED, linewidth=0.8)
     nees.plot(at_s, study.nees, color=PERSON_COLORS[1], label="mean NEES")
     nees.set(xlabel="time (s)", ylabel="NEES (ideal 4)")
-    nees.legend(frameon=False, loc="lower right")
+    nees.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     _plain(error)
     _plain(nees)
 

@@ -11,7 +11,7 @@ _WORDS = {
     "final_error_m": "error at the end (m)",
     "final_nees": "NEES at the end (ideal 4)",
     "mean_nees": "NEES over time (ideal 4)",
-    "wrong_share": "measurements taken for somebody else's (share)",
+    "wrong_share": "wrong measurements (share)",
     "swapped_share": "people taken for each other (share)",
     "lost_share": "people lost (share)",
     "gospa_m": "GOSPA (m)",
