@@ -37,13 +37,13 @@ class Watched:
         self.number = 0
 
     def mount(self):
-        """The camera stands in the map, which has one post 1 m ahead."""
+        """The camera stands in the map, which has a wall 1.5 m to the right."""
         standing = RigidTransform((0.5, 0.0, 1.2))
         mounted = StampedTransform(0, "map", "camera_link", standing, is_static=True)
         self.pipeline.add_transform(mounted)
         cells = np.zeros((20, 20), np.int8)
-        cells[10, 15] = 100
-        self.pipeline.set_map(OccupancyGrid(0, "map", 0.1, (0.0, -1.0, 0.0), cells))
+        cells[0] = 100
+        self.pipeline.set_map(OccupancyGrid(0, "map", 0.1, (0.0, -1.5, 0.0), cells))
 
     def run(self, frames):
         for _ in range(frames):

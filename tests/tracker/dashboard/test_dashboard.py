@@ -33,7 +33,7 @@ def test_the_map_has_a_number_and_a_place_and_its_picture_is_asked_for(watched):
     watched.mount()
     watched.run(2)
     first = watched.dashboard.show().state["map"]
-    assert first == {"number": 1, "origin": [0.0, -1.0, 0.0], "pixel_m": pytest.approx(0.1)}
+    assert first == {"number": 1, "origin": [0.0, -1.5, 0.0], "pixel_m": pytest.approx(0.1)}
     assert watched.dashboard.map_png()[:4] == b"\x89PNG"
     watched.mount()
     watched.run(1)
