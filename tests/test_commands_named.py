@@ -62,7 +62,7 @@ def test_every_option_of_live_stands_in_the_readme():
 
 
 def test_every_topic_that_a_replay_writes_stands_in_the_readme():
-    source = (ROOT / "tracker/replay_outputs.py").read_text(encoding="utf-8")
+    source = (ROOT / "tracker/replay/outputs.py").read_text(encoding="utf-8")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     names = re.findall(r'"/\{NODE_NAME\}/(\w+)"', source)
     assert {"tracks", "waiting_list"} <= set(names)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nodes.topics import (
+from nodes.shared.topics import (
     ENABLE_SERVICE,
     INPUT_TOPICS,
     OUTPUT_TYPES,

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from nodes.core import NodeCore
-from nodes.topics import Input, Output
+from nodes.shared.core import NodeCore
+from nodes.shared.topics import Input, Output
 from tracker import CameraImage, Config, Hands, Scan
 from tracker.containers import DepthImage
 from tracker.geometry import RigidTransform

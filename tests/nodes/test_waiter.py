@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nodes.topics import Input, Output
+from nodes.shared.topics import Input, Output
 from tracker import Config, Hands, Scan
 from tracker.messages import encode
 from tracker.messages.types import STRING, build, serialize

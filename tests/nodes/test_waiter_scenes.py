@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from nodes.core import NodeCore
-from nodes.topics import Input, Output
+from nodes.shared.core import NodeCore
+from nodes.shared.topics import Input, Output
 from tracker import Config
 from tracker.messages import Encoded
 from tracker.messages.types import STRING, build, deserialize, serialize

@@ -18,7 +18,7 @@ from tracker.cli.options import (
     parameters_from,
 )
 from tracker.errors import ConfigError
-from tracker.progress import fetch_models_if_needed, telling
+from tracker.terminal.progress import fetch_models_if_needed, telling
 from tracker.wording import counted
 
 #: The port of the page where nobody names another one.

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from tracker.config import Config
 from tracker.errors import ConfigError
-from tracker.parameter_file import read_assignment
+from tracker.parameters.ros_file import read_assignment
 from tracker.wording import one_line
 
 console = Console()
@@ -32,6 +32,17 @@ ReportOption = Annotated[
     typer.Option(help="A page with plots and tables: one .html file that needs nothing else."),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
+JobsOption = Annotated[
+    int, typer.Option("--jobs", "-j", help="Processes; 0 is one per core.", min=0)
+]
+ExecutorOption = Annotated[
+    str,
+    typer.Option(
+        "--executor",
+        help="Who runs the trials: processes (of this machine), or a Dask cluster by the address "
+        "of its scheduler, dask://host:port.",
+    ),
+]
 
 
 def parameters_from(

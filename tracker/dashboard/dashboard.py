@@ -23,8 +23,8 @@ from tracker.dashboard.memory import Memory
 from tracker.dashboard.parameters import changed, live_parameters
 from tracker.errors import TrackerError
 from tracker.geometry import worst_std
-from tracker.report.debug_picture import draw_debug_image
 from tracker.report.fan import PLACED_STD_M, fan
+from tracker.report.video.debug_picture import draw_debug_image
 from tracker.service import Answer, Command
 
 #: Pictures for the page are at most so wide, and a scan has so many points.

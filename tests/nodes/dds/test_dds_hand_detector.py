@@ -8,8 +8,8 @@ import pytest
 
 pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
 
-from nodes.qos import PROFILES
-from nodes.topics import INPUT_TOPICS, Input, Output
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import INPUT_TOPICS, Input, Output
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage, Scan

@@ -12,7 +12,7 @@ pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
 
 from cyclonedds.idl import make_idl_struct, types
 
-from nodes.diagnostics import Status, encode_statuses
+from nodes.shared.diagnostics import Status, encode_statuses
 from tracker.camera import CameraModel
 from tracker.containers import CameraImage, Pose, Scan, Tracks
 from tracker.geometry import RigidTransform

@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
 
-from nodes.topics import Output
+from nodes.shared.topics import Output
 from tracker.messages.types import STRING, build, serialize
 
 pytestmark = [pytest.mark.slow, pytest.mark.model]

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="rclpy cannot be imported: no ROS 2 is sourced here")
 
-from nodes.topics import Output
+from nodes.shared.topics import Output
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage
