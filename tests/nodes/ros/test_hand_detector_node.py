@@ -381,7 +381,7 @@ def test_ros_reads_in_tracks_since_when_a_hand_is_up_and_how_fast_its_owner_walk
     from vision_msgs.msg import Detection3DArray
 
     start_node(module=module)
-    player = play("--start-offset", 2)
+    player = play("--loop", 2)
 
     def last(output):
         heard = ear.heard[output]
