@@ -311,6 +311,7 @@ class Pipeline:
             frame_id=place.frame_id,
             work=piecewise.work if piecewise is not None else None,
             waiting_list=self.tracker.calls.now,
+            room_map=None if room is None else room.located,
         )
 
     def configure(self, config: Config) -> None:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,19 @@ def test_only_the_selected_customer_is_lit(result_of):
     assert lit is not None
     assert lit[0] > 240  # person 2 is on the right
     assert where(draw_birdseye(result_of(0, *people)), LIT) is None
+
+
+def test_somebody_of_unknown_distance_is_a_fan_and_no_place(result_of):
+    result = result_of(0, (1, 0.0, 3.0, True), sensor_pose=np.array([0.0, 0.0, np.pi / 2]))
+    spread = np.diag([0.01, 4.0, 0.1, 0.1])[None]  # known across the ray alone
+    unplaced = replace(result, tracks=replace(result.tracks, covariance=spread))
+    picture, empty = draw_birdseye(unplaced, 400), draw_birdseye(result_of(0), 400)
+    changed = np.any(picture != empty, axis=-1)
+    ahead, aside = changed[100:330, 190:210], changed[100:330, 300:]
+    assert ahead.any(axis=1).all(), "from the camera to the rim"
+    assert not aside.any()
+    at_place = round(400 * 0.84 * (1 - 3.0 / 4.0)), 200
+    assert tuple(picture[at_place]) != as_bgr(person_color(1)), "no disc where nobody may stand"
 
 
 def test_the_picture_has_the_size_asked_for(result_of, results):
