@@ -46,7 +46,7 @@ class InnovationLog:
                 "No measurement was assigned to anybody; a scenario or recording in which people "
                 "are tracked is needed."
             )
-        return Innovations.concatenate(self._parts)
+        return Innovations.concatenate(*self._parts)
 
 
 @dataclass(frozen=True, slots=True)

@@ -172,7 +172,7 @@ def _mounted(
 ) -> Mounted:
     hands, bodies = zip(*headings, strict=True) if headings else ((), ())
     return Mounted(
-        Sightings.concatenate(parts),
+        Sightings.concatenate(*parts),
         mounting,
         camera,
         Headings.concatenate(hands),
