@@ -72,8 +72,8 @@ class NodeCore:
         log: Tells the user something.
         now_ns: The node's clock, simulated or not: the one of the stamps.
         detector: Finds hands; by default MediaPipe's models.
-        transforms: By default a buffer of the project's own, filled by `receive`. A shell that
-            passes another one (around tf2's) fills it itself and calls `heard_transforms`.
+        transforms: By default a buffer of the project's own, filled by `receive`. A shell may
+            pass another one, around tf2's.
         topic_names: Where each input is listened to, for words; by default the unmapped names.
         links: What the wire knows of who publishes the inputs; asked for every report.
         steady_ns: A clock that never jumps.
@@ -166,11 +166,6 @@ class NodeCore:
             self._receive_image(message)
         else:
             self._inbox.put(item, message)
-
-    def heard_transforms(self, *, is_static: bool = False) -> None:
-        """Transforms have come to a buffer that the shell fills itself."""
-        self._diagnostics.heard(Input.STATIC_TRANSFORMS if is_static else Input.TRANSFORMS)
-        self._inbox.wake()
 
     def enable(self, is_enabled: bool) -> str:
         """Process images from now on, or leave them and forget everybody.

@@ -65,11 +65,6 @@ class Nis:
     mean: float
     bounds: tuple[float, float]
 
-    @property
-    def is_consistent(self) -> bool:
-        """The mean lies within its bounds."""
-        return self.bounds[0] <= self.mean <= self.bounds[1]
-
 
 def innovations_of_steps(steps: Iterable[Step], config: Config) -> Innovations:
     """Innovations of a recording, from `recorded_steps`, under any parameters.
