@@ -1,4 +1,4 @@
-"""Was everybody there, fresh, raised and served: when, and how certain was it?
+"""Was everybody there, and where was the estimate fresh: when?
 
 Kept beside `History` for the pages that want more than intervals. Bounded in memory: rows are
 thinned, and whoever was last seen longest ago leaves.
@@ -28,12 +28,12 @@ class PersonStates:
 
     id: int
     last_ns: int = 0
-    _trail: Trail = field(default_factory=lambda: Trail(8, capacity=_ROWS_KEPT))
+    _trail: Trail = field(default_factory=lambda: Trail(3, capacity=_ROWS_KEPT))
 
-    def append(self, stamp_ns: int, at_s: float, *numbers: float) -> None:
-        """Take in an image: seconds, then the numbers of the properties below."""
+    def append(self, stamp_ns: int, at_s: float, existence: float, is_fresh: float) -> None:
+        """Take in an image; see the properties below."""
         self.last_ns = stamp_ns
-        self._trail.append(at_s, *numbers)
+        self._trail.append(at_s, existence, is_fresh)
 
     @property
     def at_s(self) -> FloatArray:
@@ -41,24 +41,14 @@ class PersonStates:
         return self._trail.rows[:, 0]
 
     @property
-    def xy_m(self) -> FloatArray:
-        """Shape (R, 2): place in the fixed frame."""
-        return self._trail.rows[:, 1:3]
-
-    @property
-    def covariance_m2(self) -> FloatArray:
-        """Shape (R, 2, 2): of the place."""
-        return self._trail.rows[:, [3, 4, 4, 5]].reshape(-1, 2, 2)
-
-    @property
     def existence(self) -> FloatArray:
         """Shape (R,): probability that the person is there."""
-        return self._trail.rows[:, 6]
+        return self._trail.rows[:, 1]
 
     @property
     def is_fresh(self) -> FloatArray:
         """Shape (R,): 1 where the estimate was recent and certain enough to drive to, else 0."""
-        return self._trail.rows[:, 7]
+        return self._trail.rows[:, 2]
 
 
 class States:
@@ -82,17 +72,14 @@ class States:
             self._start_ns = result.stamp_ns
         at_s = (result.stamp_ns - self._start_ns) / 1e9
         tracks = result.tracks[result.tracks.confirmed]
-        covariances = tracks.covariance[:, :2, :2]
-        worst_m = worst_std(covariances)
+        worst_m = worst_std(tracks.covariance[:, :2, :2])
         is_fresh = (tracks.unseen_s <= self._config.pose_max_age_s) & (
             worst_m <= self._config.pose_max_std_m
         )
         for row, track_id in enumerate(tracks.id.tolist()):
-            x, y = tracks.mean[row, :2].tolist()
-            (xx, xy), (_, yy) = covariances[row].tolist()
             existence, fresh = float(tracks.existence[row]), float(is_fresh[row])
             person = self.people.setdefault(track_id, PersonStates(track_id))
-            person.append(result.stamp_ns, at_s, x, y, xx, xy, yy, existence, fresh)
+            person.append(result.stamp_ns, at_s, existence, fresh)
         while len(self.people) > _PEOPLE_KEPT:
             gone = min(self.people.values(), key=lambda person: person.last_ns)
             del self.people[gone.id]

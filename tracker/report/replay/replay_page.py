@@ -13,7 +13,6 @@ from tracker.report.history.history import History, Person
 from tracker.report.history.states import States
 from tracker.report.page import Facts, Gallery, Page, Part, Picture, Section, Table, Text
 from tracker.report.plots.state_timeline import draw_state_timeline
-from tracker.report.plots.trail_map import draw_trail_map
 from tracker.report.provenance import provenance_section, settings_section
 from tracker.report.replay.episode_table import episode_table
 from tracker.report.replay.moments import Moments
@@ -73,20 +72,14 @@ class ReplayReport:
         picture = Picture(
             overview.read_bytes(), "image/png", "Where hands were raised, and below it when."
         )
-        trails = Picture.plot(
-            draw_trail_map(history, self._states),
-            "Where everybody was followed, from above, with 2-sigma ellipses of the position.",
-            "png",
-        )
         timeline = Picture.plot(
             draw_state_timeline(history, self._states),
             "Each person's existence (a probability), raised hand, fresh pose, and service.",
         )
         sections = (
             Section("In short", (self._headline(history, episodes), *_trouble(problems))),
-            Section("Overview", (picture,)),
+            Section("Map", (picture,)),
             Section("People", tuple(people) or (Text(("Nobody was confirmed.",)),)),
-            Section("Map", (trails,)),
             Section("Time line", (timeline,)),
             Section("Pictures", _gallery(self._moments.pictures)),
             Section("Remarks", _remarks(history, remarks)),

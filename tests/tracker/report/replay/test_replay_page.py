@@ -54,11 +54,11 @@ class Images(HTMLParser):
 
 def test_the_page_has_every_chapter_and_picture(page):
     assert [section.title for section in page.sections if section.parts] == [
-        "In short", "Overview", "People", "Map", "Time line", "Pictures", "Remarks",
+        "In short", "Map", "People", "Time line", "Pictures", "Remarks",
         "Time per image", "Settings", "Versions and command",
     ]  # fmt: skip
     shown = Images(page.html())
-    assert len(shown.alts) == 3 + 4  # overview, map, time line; four times a hand went up
+    assert len(shown.alts) == 2 + 4  # map, time line; four times a hand went up
     # A person's first hand is told once they are confirmed, with their fifth image.
     assert shown.alts[-4:] == ["2.4 s: #1 up", "5.9 s: #2 up", "16.4 s: #4 up", "24.2 s: #1 up"]
 
@@ -105,7 +105,6 @@ def test_an_estimate_is_fresh_while_it_is_recent_and_certain(result_of):
     strict.write(result_of(0, (1, 1.0, 0.0, True)))
     assert states.people[1].is_fresh.tolist() == [1.0]
     assert strict.people[1].is_fresh.tolist() == [0.0]
-    assert states.people[1].covariance_m2[0].tolist() == [[0.04, 0.0], [0.0, 0.01]]
 
 
 def test_states_of_a_crowd_stay_bounded(result_of):
