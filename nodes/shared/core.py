@@ -34,7 +34,7 @@ from tracker.messages import Encoded, decode, encode
 from tracker.messages.header_peek import peek_header
 from tracker.messages.types import deserialize
 from tracker.notes import NoteKind
-from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.detector import HandDetector
 from tracker.perception.gestures.customers import GestureNews
 from tracker.pipeline import Pipeline
 from tracker.service import Answer, Command, Verb
@@ -368,11 +368,10 @@ class NodeCore:
 
     def _pace(self, result: FrameResult) -> None:
         """Let the search shrink before images are lost, and grow again."""
-        detector = self._pipeline.detector
-        if result.work is not None and isinstance(detector, PiecewiseDetector):
+        if result.work is not None:
             busy_share = self._busy_s * self._config.processing_rate
             most = self._config.search_regions_per_frame
-            detector.set_budget(self._budget.after(result.work, busy_share, most))
+            self._pipeline.model_runs = self._budget.after(result.work, busy_share, most)
 
     def _reset(self, reason: str) -> None:
         self._pipeline.reset()

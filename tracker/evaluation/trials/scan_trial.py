@@ -12,6 +12,7 @@ from tracker.containers import CameraImage, FrameResult, Hands, Truth
 from tracker.evaluation.metrics.scores import TrialScores
 from tracker.evaluation.trials.scenario import ScanScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
+from tracker.perception.detector import NO_HINTS, Hints
 from tracker.pipeline import Pipeline
 from tracker.simulation.floor_map import floor_map
 from tracker.simulation.lidar import ScanSimulator
@@ -148,6 +149,8 @@ def _transforms(
 class _ShownHands:
     """Stands in for the hand models: it is told who is there, and looks at no picture."""
 
+    work = None
+
     def __init__(self, scenario: ScanScenario, scene: Scene, rng: np.random.Generator) -> None:
         self._scenario, self._scene, self._rng = scenario, scene, rng
         self.look(0.0)
@@ -158,7 +161,7 @@ class _ShownHands:
         self._view = Viewpoint.of(self._scene.camera, map_from_camera(self._scene, time_s))
         self.in_view = hands_in_view(self._scene, self._view, self.people)
 
-    def find(self, image: CameraImage) -> Hands:
+    def find(self, image: CameraImage, hints: Hints = NO_HINTS) -> Hands:
         return show_hands(
             self._scene,
             self._view,
