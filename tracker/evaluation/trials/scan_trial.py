@@ -19,6 +19,7 @@ from tracker.simulation.lidar import ScanSimulator
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
 from tracker.simulation.random_rooms.bistro import draw_bistro
+from tracker.simulation.random_rooms.guests import Visit
 from tracker.simulation.random_rooms.restaurant import draw_restaurant
 from tracker.simulation.rendering.camera_view import hands_in_view
 from tracker.simulation.scene import Scene
@@ -64,9 +65,14 @@ def play_scan_trial(
     rng = trial_rng(seed, trial)
     low, high = scenario.people
     draw_room = draw_bistro if scenario.furniture == "bistro" else draw_restaurant
-    scene = draw_room(
-        rng,
-        people=int(rng.integers(low, high + 1)),
+    visit = visit_of(scenario, int(rng.integers(low, high + 1)))
+    yield from play_scene(scenario, draw_room(rng, visit), config, rng, watch=watch)
+
+
+def visit_of(scenario: ScanScenario, people: int) -> Visit:
+    """So many people, who do what the scenario says."""
+    return Visit(
+        people=people,
         duration_s=scenario.duration_s,
         rate_hz=scenario.rate_hz,
         sitting_share=scenario.sitting_share,
@@ -74,7 +80,6 @@ def play_scan_trial(
         hand_up_s=scenario.hand_up_s,
         hand_down_s=scenario.hand_down_s,
     )
-    yield from play_scene(scenario, scene, config, rng, watch=watch)
 
 
 def play_scene(
