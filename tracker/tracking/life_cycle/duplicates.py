@@ -14,6 +14,8 @@ SILENT_S = 0.5
 #: Tracks that were followed side by side for longer are two people (guess); somebody who sets off
 #: is taken for two for a moment.
 TOGETHER_S = 0.5
+#: Where somebody came from is known for so long back, by how they walk (guess).
+CAME_FROM_S = 3.0
 
 
 @loop
@@ -64,14 +66,27 @@ def _nearest_duplicate(
         is_apart = _were_together(people, silent, seen)
         if people.counts[field.ID, seen] > 0:
             is_apart = people.spans[field.MISSING_S, silent] <= SILENT_S
-        x, y = people.mean[0, seen, 0], people.mean[0, seen, 1]
-        if seen < mean.shape[1]:
-            x, y = mean[0, seen, 0], mean[0, seen, 1]
-        dx, dy = mean[0, silent, 0] - x, mean[0, silent, 1] - y
-        apart_m = np.sqrt(dx * dx + dy * dy)
+        apart_m = _apart_m(people, mean, silent, seen)
         if not is_apart and apart_m < least:
             nearest, least = seen, apart_m
     return nearest
+
+
+@loop
+def _apart_m(people: People, mean: FloatArray, silent: int, seen: int) -> float:
+    """Distance of a seen track from a silent one: now, or when that was last seen if it was less.
+
+    Somebody who sets off, half hidden, may be found again only after a few steps. They walk, and
+    come from where the silent one was; furniture has never been anywhere else.
+    """
+    state = mean[0, seen] if seen < mean.shape[1] else people.mean[0, seen]
+    dx, dy = state[0] - mean[0, silent, 0], state[1] - mean[0, silent, 1]
+    apart_m = np.sqrt(dx * dx + dy * dy)
+    passed_s = (people.counts[field.SEEN_NS, seen] - people.counts[field.SEEN_NS, silent]) / 1e9
+    if passed_s <= CAME_FROM_S:
+        dx, dy = dx - state[2] * passed_s, dy - state[3] * passed_s
+        apart_m = min(apart_m, np.sqrt(dx * dx + dy * dy))
+    return apart_m
 
 
 @loop

@@ -101,6 +101,28 @@ def test_who_has_been_silent_for_a_moment_alone_is_left_alone(left):
     assert left(silent_s=0.9 * SILENT_S) == [OLD, YOUNG]
 
 
+@pytest.mark.parametrize(
+    ("velocity_mps", "passed_s", "expected"),
+    [
+        ((1.0, 0.2), 2.0, [OLD]),
+        ((0.0, 0.0), 2.0, [OLD, BYSTANDER]),
+        ((1.0, 0.2), 4.0, [OLD, BYSTANDER]),
+    ],
+    ids=["walks away from there", "stands", "too long ago"],
+)
+def test_who_comes_walking_from_where_a_customer_was_is_that_customer(
+    people_of, velocity_mps, passed_s, expected
+):
+    place = np.array([3.0, 1.0]) + np.array([1.0, 0.2]) * passed_s
+    mean = np.array([[3.0, 1.0, 0.0, 0.0], [*place, *velocity_mps]])
+    people, keep = people_of(mean, np.eye(4), ids=(OLD, BYSTANDER)), np.ones(2, dtype=bool)
+    people.spans[MISSING_S, 0] = passed_s
+    people.counts[BORN_NS, 1] = round((passed_s - 0.5) * SECOND_NS)
+    people.counts[SEEN_NS, 1] = round(passed_s * SECOND_NS)
+    merge_duplicates(people, people.mean.copy(), np.array([0.0, 1.0]), keep, 0.45)
+    assert people.counts[ID, keep].tolist() == expected
+
+
 def test_the_nearest_of_those_who_are_seen_is_the_duplicate(people_of):
     mean = np.array([[0.0, 0, 0, 0], [0.4, 0, 0, 0], [0.2, 0, 0, 0]])
     people, keep = people_of(mean, np.eye(4), ids=[1, 2, 3]), np.ones(3, dtype=bool)
