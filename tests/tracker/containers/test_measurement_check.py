@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from tracker.containers import Measurements, SensorKind
-from tracker.containers.measurement_check import usable_rows
+from tracker.containers.measurement_check import are_semidefinite, usable_rows
 from tracker.errors import MeasurementError, ShapeError
 
 NAN, INF = math.nan, math.inf
@@ -105,6 +105,17 @@ def test_a_covariance_that_is_none_is_refused(covariance):
     with pytest.raises(MeasurementError, match=r"Row 2 of 3 .* the covariance .* needed: a symm"):
         Measurements.cartesian(np.ones((3, 2)), noise)
     assert len(Measurements.cartesian(np.ones((3, 2)), noise, refuse="drop")) == 2
+
+
+def test_a_covariance_in_the_plane_is_judged_as_its_eigenvalues_say():
+    rng = np.random.default_rng(5)
+    matrices = rng.standard_normal((200, 2, 2))
+    matrices += np.swapaxes(matrices, 1, 2)
+    line = rng.standard_normal((20, 2))
+    flat = line[:, :, None] * line[:, None]
+    is_none = np.linalg.eigvalsh(matrices)[:, 0] < 0.0
+    assert are_semidefinite(matrices).tolist() == (~is_none).tolist()
+    assert are_semidefinite(flat).all()
 
 
 @pytest.mark.parametrize("bad", [NAN, INF, -1e9, 1e300])
