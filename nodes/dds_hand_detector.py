@@ -38,7 +38,7 @@ from nodes.shared.topics import (
 from tracker.config import NODE_NAME, Config
 from tracker.errors import ConfigError, TrackerError
 from tracker.messages import Encoded
-from tracker.messages.encode import header
+from tracker.messages.parts import header
 from tracker.messages.types import build, deserialize, serialize
 from tracker.parameters.retired import without_retired
 from tracker.parameters.ros_file import is_ours, read_assignment, read_parameters

@@ -315,6 +315,7 @@ class Pipeline:
             frame_id=place.frame_id,
             work=self.detector.work,
             waiting_list=self.tracker.calls.now,
+            room_map=None if room is None else room.located,
         )
 
     def configure(self, config: Config) -> None:

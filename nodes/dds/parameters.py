@@ -12,7 +12,7 @@ from nodes.dds.profiles import PARAMETER_EVENTS, PARAMETER_SERVICES
 from nodes.shared.parameters import Descriptor, changed, descriptors
 from tracker.config import Config
 from tracker.errors import ConfigError
-from tracker.messages.encode import header
+from tracker.messages.parts import header
 from tracker.messages.types import build, serialize
 
 _EVENT = "rcl_interfaces/msg/ParameterEvent"

@@ -19,7 +19,7 @@ from nodes.shared.topics import DIAGNOSTICS_TYPE, Input
 from tracker.config import Config
 from tracker.containers import FrameResult, PerceptionWork
 from tracker.messages import Encoded
-from tracker.messages.encode import header
+from tracker.messages.parts import header
 from tracker.messages.types import build, serialize
 from tracker.notes import NoteKind
 from tracker.problems.clock_offset import ClockOffset

@@ -12,6 +12,7 @@ from tracker.messages import (
     encode,
     encode_markers,
     encode_raised,
+    encode_tracks,
     encode_waiting_list,
 )
 from tracker.report.video.debug_picture import draw_debug_image
@@ -29,7 +30,8 @@ def publish_answer(result: FrameResult, publish: Publish) -> None:
     if result.approach_pose is not None:
         publish(Output.APPROACH_POSE, encode(result.approach_pose))
     publish(Output.HAND_RAISED, encode(result.hand_raised))
-    publish(Output.RAISED_HANDS, encode_raised(result.tracks, frame_id=result.frame_id))
+    raised = encode_raised(result.tracks, frame_id=result.frame_id, is_on_floor=result.is_on_floor)
+    publish(Output.RAISED_HANDS, raised)
 
 
 def publish_waiting_list(
@@ -65,7 +67,8 @@ def publish_views(
     """
     frame_id, confirmed = result.frame_id, result.tracks[result.tracks.confirmed]
     if frame_id is not None and has_subscribers(Output.TRACKS):
-        publish(Output.TRACKS, encode(confirmed, frame_id=frame_id))
+        said = encode_tracks(confirmed, frame_id=frame_id, is_on_floor=result.is_on_floor)
+        publish(Output.TRACKS, said)
     if frame_id is not None and has_subscribers(Output.MARKERS):
         approach = result.approach_pose
         publish(Output.MARKERS, encode_markers(confirmed, frame_id=frame_id, approach=approach))
@@ -92,6 +95,6 @@ def publish_nobody(
     if frame_id is None:
         return
     if has_subscribers(Output.TRACKS):
-        publish(Output.TRACKS, encode(nobody, frame_id=frame_id))
+        publish(Output.TRACKS, encode_tracks(nobody, frame_id=frame_id))
     if has_subscribers(Output.MARKERS):
         publish(Output.MARKERS, encode_markers(nobody, frame_id=frame_id))

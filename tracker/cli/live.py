@@ -27,13 +27,13 @@ _PORT = 8750
 
 def live_command(
     source: Annotated[
-        str,
+        str | None,
         typer.Argument(
-            help="A camera's number, a device as /dev/video0, an address as rtsp://..., a "
-            "GStreamer pipeline that ends in `appsink`, or a recording or video, which plays as "
-            "if it were live."
+            help="A camera's number (0 by default), a device as /dev/video0, an address as "
+            "rtsp://..., a GStreamer pipeline that ends in `appsink`, or a recording or video, "
+            "which plays as if it were live."
         ),
-    ] = "0",
+    ] = None,
     simulated: Annotated[
         bool, typer.Option("--simulated", help="No camera: the demo's restaurant, rendered live.")
     ] = False,
@@ -72,6 +72,9 @@ def live_command(
     check_is_no_folder("--record", record)
     if record is not None and record.suffix.lower() != ".mcap":
         raise ConfigError(f"--record is {record}; needed is a name that ends in .mcap.")
+    if simulated and source is not None:
+        raise ConfigError(f"--simulated watches no {source}; a scene is named by --scene {source}")
+    source = source or "0"
     title = f"simulated: {scene}" if simulated else f"camera {source}"
     with ExitStack() as held:
         if simulated:

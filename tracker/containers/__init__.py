@@ -14,7 +14,7 @@ from tracker.containers.arrays import (
 from tracker.containers.hands import Hands, Refusal
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
-from tracker.containers.occupancy_grid import OccupancyGrid
+from tracker.containers.occupancy_grid import LocatedMap, OccupancyGrid
 from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
 from tracker.containers.sensor_kind import SensorKind
 from tracker.containers.sensors import CameraImage, DepthArray, DepthImage, Scan, depth_in_meters
@@ -34,6 +34,7 @@ __all__ = [
     "Hands",
     "ImageArray",
     "IntArray",
+    "LocatedMap",
     "LocatedScan",
     "Measurements",
     "OccupancyGrid",

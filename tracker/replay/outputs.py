@@ -9,8 +9,20 @@ from types import TracebackType
 import numpy as np
 
 from tracker.config import NODE_NAME, Config
-from tracker.containers import CameraImage, FrameResult, ImageArray, OccupancyGrid, Scan
-from tracker.messages import encode, encode_markers
+from tracker.containers import (
+    CameraImage,
+    FloatArray,
+    FrameResult,
+    ImageArray,
+    OccupancyGrid,
+    Scan,
+)
+from tracker.messages import (
+    encode_markers,
+    encode_raised,
+    encode_tracks,
+    encode_waiting_list,
+)
 from tracker.perception.gestures.customers import GestureNews
 from tracker.recording import RecordingWriter
 from tracker.report.replay.tracks_csv import TracksCsv
@@ -47,6 +59,7 @@ class ReplayOutputs:
         recording, table, video, *_ = replay_files(out)
         self._config = config
         self._ahead_m = _AHEAD_M[0]
+        self._robot_xy_m: FloatArray | None = None
         self._gestures = GestureNews()
         with ExitStack() as opened:
             enter, frame = opened.enter_context, config.fixed_frame
@@ -84,6 +97,9 @@ class ReplayOutputs:
         if result.approach_pose is not None:
             put(f"/{NODE_NAME}/approach_pose", stamp_ns, result.approach_pose)
         put("/hand_raised", stamp_ns, result.hand_raised)
+        raised = encode_raised(tracks, frame_id=result.frame_id, is_on_floor=result.is_on_floor)
+        put(f"/{NODE_NAME}/raised_hands", stamp_ns, raised)
+        self._write_waiting_list(result)
         for news in self._gestures.after(tracks):
             put(f"/{NODE_NAME}/gesture", stamp_ns, news)
         debug = draw_debug_image(image, result.hands, tracks, self._config)
@@ -91,10 +107,25 @@ class ReplayOutputs:
         if result.frame_id is not None:
             confirmed, frame_id = tracks[tracks.confirmed], result.frame_id
             markers = encode_markers(confirmed, frame_id=frame_id, approach=result.approach_pose)
-            put(f"/{NODE_NAME}/tracks", stamp_ns, encode(confirmed, frame_id=frame_id))
+            said = encode_tracks(confirmed, frame_id=frame_id, is_on_floor=result.is_on_floor)
+            put(f"/{NODE_NAME}/tracks", stamp_ns, said)
             put(f"/{NODE_NAME}/markers", stamp_ns, markers)
         self._table.write(result)
         self._video.write(self._side_by_side(image, result))
+
+    def _write_waiting_list(self, result: FrameResult) -> None:
+        """As the node: from the first image on at which the robot was located."""
+        if result.sensor_pose is not None:
+            self._robot_xy_m = result.sensor_pose[:2]
+        if self._robot_xy_m is None:
+            return
+        said = encode_waiting_list(
+            result.waiting_list,
+            frame_id=self._config.fixed_frame,
+            robot_xy_m=self._robot_xy_m,
+            approach_distance_m=self._config.approach_distance_m,
+        )
+        self._recording.write(f"/{NODE_NAME}/waiting_list", result.stamp_ns, said)
 
     def _side_by_side(self, image: CameraImage, result: FrameResult) -> ImageArray:
         full_size = self._config.replace(downscale_factor=1)

@@ -228,7 +228,10 @@ class CallKeeper:
         chosen_id = choose(callers, self._now.selected_id, stamp_ns, self._robot_xy_m, self.config)
         of = {state: [item for item in callers if item.state is state] for state in CallState}
         waiting = in_order(of[CallState.WAITING], self._robot_xy_m, self.config)
-        waiting.sort(key=lambda caller: caller.id != chosen_id)
+        if (
+            self.config.calls_wait
+        ):  # else the selected one may be whose hand is up, not who is next
+            waiting.sort(key=lambda caller: caller.id != chosen_id)
         over = of[CallState.SERVED] + of[CallState.GONE] + of[CallState.IGNORED]
         over.sort(key=lambda caller: (-caller.state_since_ns, caller.id))
         served = of[CallState.BEING_SERVED][::-1]

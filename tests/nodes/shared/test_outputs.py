@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from nodes.shared.topics import Output
@@ -63,3 +64,35 @@ def test_nobody_is_taken_back_where_nobody_was_shown(make_wire):
     wire.settle()
     assert not wire.messages(Output.HAND_RAISED)[-1].data
     assert frames(wire, Output.TRACKS) == frames(wire, Output.MARKERS) == []
+
+
+def test_tracks_say_since_when_how_fast_and_how_far_all_of_it_can_be_trusted(wire):
+    show(wire, range(8), is_located=True)
+    (person,) = wire.messages(Output.TRACKS)[-1].detections
+    (raised,) = wire.messages(Output.RAISED_HANDS)[-1].detections
+    words = {result.hypothesis.class_id.partition("/")[0]: result for result in person.results}
+    assert words.keys() >= {"hand_raised", "age_s", "raised_since", "velocity"}
+    stamp = raised.header.stamp
+    since = f"raised_since/{stamp.sec}.{stamp.nanosec:09d}"
+    assert words["raised_since"].hypothesis.class_id == since
+    age_s = float(words["age_s"].hypothesis.class_id.partition("/")[2])
+    assert 0.5 <= age_s <= 0.8
+    assert abs(words["velocity"].pose.pose.position.x) < 1.0
+    variances = person.results[0].pose.covariance[::7]
+    assert all(variances > 0.0)
+    assert variances[5] == pytest.approx(np.pi**2 / 3), "nobody knows where they look"
+    assert words["velocity"].pose.covariance[0] > 0.0
+
+
+@pytest.mark.parametrize(("x_m", "z_std_m"), [(0.0, 1.0), (2.0, 0.05)], ids=["camera", "room"])
+def test_only_of_a_frame_of_the_room_the_floor_is_known(wire, x_m, z_std_m):
+    stamp_ns = START_NS
+    for number in range(6):
+        stamp_ns = START_NS + number * PERIOD_NS
+        wire.base(stamp_ns - 1_000_000, x_m)
+        wire.base(stamp_ns + 1_000_000, x_m)
+        wire.scan(stamp_ns)
+        wire.image(stamp_ns)
+        wire.settle()
+    (person,) = wire.messages(Output.TRACKS)[-1].detections
+    assert person.results[0].pose.covariance[14] == pytest.approx(z_std_m**2)

@@ -99,6 +99,7 @@ def test_output_mcap_holds_the_topics_of_the_node_with_the_pose_before_the_bool(
     assert topics >= {
         "/hand_raised", "/customer_pose", "/hand_detection_debug", "/scan", "/tf_static",
         "/hand_detector/tracks", "/hand_detector/markers", "/hand_detector/approach_pose",
+        "/hand_detector/waiting_list", "/hand_detector/raised_hands",
     }  # fmt: skip
     raised = [message.data for topic, _, message in seen if topic == "/hand_raised"]
     assert raised == [False] + [True] * 19
@@ -107,6 +108,13 @@ def test_output_mcap_holds_the_topics_of_the_node_with_the_pose_before_the_bool(
     assert pose.pose.position.x == pytest.approx(1.5, abs=0.1)
     debug = next(message for topic, _, message in seen if topic == "/hand_detection_debug")
     assert (debug.height, debug.width, debug.encoding) == (240, 320, "bgr8")
+    calls = [message for topic, _, message in seen if topic == "/hand_detector/waiting_list"]
+    assert len(calls) == 20
+    (caller,) = calls[-1].detections
+    assert caller.results[0].hypothesis.class_id == "waiting"
+    hands = [message for topic, _, message in seen if topic == "/hand_detector/raised_hands"]
+    assert [len(message.detections) for message in hands] == [0] + [1] * 19
+    assert caller.header.stamp == hands[-1].detections[0].header.stamp
     order = [topic for topic, log_ns, _ in seen if log_ns == START_NS + 19 * SECOND_NS // 10]
     assert order.index("/customer_pose") < order.index("/hand_raised")
 
@@ -251,7 +259,9 @@ def test_missing_transforms_are_a_problem_that_names_the_frames(tmp_path, write_
     assert "'map'" in problem
     assert "fixed_frame" in problem
     raised = [
-        m.data for topic, _, m in read_topics(tmp_path / "out/output.mcap") if "raised" in topic
+        m.data
+        for topic, _, m in read_topics(tmp_path / "out/output.mcap")
+        if topic == "/hand_raised"
     ]
     assert any(raised)
 
@@ -291,7 +301,9 @@ def test_a_truncated_recording_is_replayed_as_far_as_it_goes(tmp_path, write_bag
     result = replay(bag, tmp_path / "out", detector=hand_ahead)
     assert str(bag) in result.problems[0]
     raised = [
-        m.data for topic, _, m in read_topics(tmp_path / "out/output.mcap") if "raised" in topic
+        m.data
+        for topic, _, m in read_topics(tmp_path / "out/output.mcap")
+        if topic == "/hand_raised"
     ]
     assert 5 < len(raised) < 60
 

@@ -172,15 +172,24 @@ class PeopleStudy(StudyOf[PeopleScenario | ScanScenario]):
     """
 
     @property
+    def remark(self) -> str:
+        """What one must know to judge the false tracks and raises."""
+        clutter = self.scenario.clutter_per_frame
+        return (
+            f"In every image {clutter:g} raised hands on average are nobody's: false tracks and "
+            f"false raises come of these. A trial lasts {self.scenario.duration_s:g} s."
+        )
+
+    @property
     def figures(self) -> tuple[Figure, ...]:
         """The table of the study."""
         rows = self.rows
         hands, again = float(rows["hands"].sum()), float(rows["raised_again"].sum())
         return (
             _mean("GOSPA (m), cutoff 1 m", rows["gospa_m"]),
-            _mean("  localisation (m^2)", rows["gospa_localisation"]),
-            _mean("  missed (m^2)", rows["gospa_missed"]),
-            _mean("  false (m^2)", rows["gospa_false"]),
+            _mean("  error of places (m²)", rows["gospa_localisation"]),
+            _mean("  people missed (m²)", rows["gospa_missed"]),
+            _mean("  false tracks (m²)", rows["gospa_false"]),
             _mean("OSPA (m), cutoff 1 m", rows["ospa_m"]),
             _mean("missed share of people", rows["missed_share"]),
             _mean("false tracks in a frame", rows["false_tracks"]),

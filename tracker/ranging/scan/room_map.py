@@ -8,12 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.containers import FloatArray, OccupancyGrid
-from tracker.containers.occupancy_grid import UNKNOWN
+from tracker.containers import FloatArray, LocatedMap, OccupancyGrid
+from tracker.containers.occupancy_grid import OCCUPIED_FROM, UNKNOWN
 from tracker.geometry import RigidTransform
 
-#: From so many percent on a cell counts as occupied; what map_server asks for by default.
-OCCUPIED_FROM = 65
 #: Mapped furniture shows up this many cells and meters beside its cells, at most (guess).
 _REACH_CELLS, _REACH_M = 1.5, 0.1
 #: Near an occupied cell a person-sized thing is so much more often furniture than a person (guess)
@@ -31,11 +29,13 @@ class RoomMap:
         resolution_m: Side of a cell.
         grid_from_asked: From the frame of the points that are asked about to the grid, whose
             cell [0, 0] begins at its origin.
+        grid: The map itself.
     """
 
     distances_m: NDArray[np.float32]
     resolution_m: float
     grid_from_asked: RigidTransform
+    grid: OccupancyGrid
 
     @staticmethod
     def of(grid: OccupancyGrid) -> RoomMap:
@@ -47,7 +47,7 @@ class RoomMap:
             distances_m = np.asarray(in_cells * np.float32(grid.resolution_m))
         distances_m[grid.cells == UNKNOWN] = np.nan
         map_from_grid = RigidTransform.from_planar(*grid.origin)
-        return RoomMap(distances_m, grid.resolution_m, map_from_grid.inverse())
+        return RoomMap(distances_m, grid.resolution_m, map_from_grid.inverse(), grid)
 
     def seen_from(self, map_from_other: RigidTransform) -> RoomMap:
         """The same map for points of another frame.
@@ -56,6 +56,12 @@ class RoomMap:
             map_from_other: Where that frame is in the frame that is asked about now.
         """
         return replace(self, grid_from_asked=self.grid_from_asked @ map_from_other)
+
+    @property
+    def located(self) -> LocatedMap:
+        """The map in the frame of the points that are asked about, to be drawn."""
+        x_m, y_m, yaw_rad = self.grid_from_asked.inverse().planar.tolist()
+        return LocatedMap(self.grid, (x_m, y_m, yaw_rad))
 
     def distance_m(self, xy_m: FloatArray) -> FloatArray:
         """How far points are from the nearest occupied cell.

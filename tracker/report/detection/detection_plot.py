@@ -22,12 +22,12 @@ from tracker.evaluation.detection.study import DetectionStudy
 from tracker.report.palette import FADED, INK, PAPER, PERSON_COLORS
 
 _RECALL, _FALSE = PERSON_COLORS[0], PERSON_COLORS[1]
-_TITLES = {"size": "length of the hand", "company": "people in the picture"}
+_TITLES = {"size": "length of the hand"}
 _SMALL = ("size", "light", "blur", "skin", "sleeve", "hand", "style", "company")
 
 
 def draw_detection(study: DetectionStudy, path: str | Path) -> None:
-    """Draw recall against distance, recall by other factors, and false raises.
+    """Draw the share of hands found against distance and other factors, and false raises.
 
     What was not played is left out.
 
@@ -56,7 +56,8 @@ def draw_detection(study: DetectionStudy, path: str | Path) -> None:
     figure.suptitle(
         f"{total.found} of {total.total} raised hands found within {FRAMES_TO_FIND} images; "
         f"{false_rate(study.minutes).count} false raises in {len(study.minutes)} minutes\n"
-        f"seed {study.seed}; bars: 95 % intervals; gray lines: all hands below, one an hour above",
+        f"seed {study.seed}; bars: 95 % intervals; gray lines: the share of all hands, and one "
+        "false raise an hour",
         color=INK,
     )
     figure.savefig(path, format="png")
@@ -74,7 +75,12 @@ def _draw_distance(axes: Axes, study: DetectionStudy, rows: Sequence[Recall]) ->
             f"{row.found}/{row.total}", (distance_m, row.high), (0, 7), fontsize=8, color=INK,
             textcoords="offset points", ha="center", annotation_clip=False,
         )  # fmt: skip
-    axes.set(xlabel="distance (m)", ylabel="recall", ylim=(0.0, 1.08), title="found")
+    axes.set(
+        xlabel="distance (m)",
+        ylabel="share of raised hands found",
+        ylim=(0.0, 1.08),
+        title="found, by distance",
+    )
     axes.set_xticks(at_m)
     axes.set_yticks(np.linspace(0.0, 1.0, 6))
     _plain(axes)
@@ -90,7 +96,7 @@ def _draw_levels(axes: Axes, name: str, rows: Sequence[Recall], total: Recall) -
     axes.set(
         xlim=(-0.02, 1.02),
         ylim=(len(rows) - 0.5, -0.5),
-        title=f"recall by {_TITLES.get(name, name)}",
+        title=f"found, by {_TITLES.get(name, name)}",
     )
     axes.set_xticks((0.0, 0.5, 1.0))
     _plain(axes)
@@ -117,7 +123,7 @@ def _draw_false(axes: Axes, study: DetectionStudy) -> None:
 
 
 def _false_label(row: FalseRate) -> str:
-    who = "camera" if row.level == "nobody calls" else row.level.replace("_", " ")
+    who = "all together" if row.level == "nobody calls" else row.level.replace("_", " ")
     return f"{who} ({row.count} in {row.hours:.2f} h)"
 
 

@@ -17,13 +17,11 @@ from tracker.containers import FloatArray, FrameResult, Refusal, Tracks
 from tracker.geometry import worst_std
 from tracker.gesture import Gesture
 from tracker.notes import NoteKind
+from tracker.report.fan import PLACED_STD_M, direction, fan
 from tracker.report.history.hit_grid import HitGrid
 from tracker.report.history.trail import Trail
 
 PEOPLE_KEPT = 1000
-#: A place is told where its standard deviation, along the worst axis, is below; elsewhere the
-#: bearing alone. The default of `pose_max_std_m`.
-PLACED_STD_M = 0.5
 
 
 @dataclass(slots=True, eq=False)
@@ -60,19 +58,14 @@ class RaisedHand(Span):
         return np.asarray(self.sum_xy_m / self.placed) if self.placed else None
 
     @property
-    def bearing_rad(self) -> float:
-        """Direction from the camera in which the hand was first reported, from the x axis."""
-        x, y = self.xy_m - self.camera_xy_m
-        return float(np.arctan2(y, x))
+    def direction_rad(self) -> tuple[float, float]:
+        """Bearing from the camera at which the hand was first reported, and its deviation."""
+        return direction(self.xy_m, self.covariance_m2, self.camera_xy_m)
 
     @property
-    def bearing_std_rad(self) -> float:
-        """Standard deviation of that."""
-        x, y = (self.xy_m - self.camera_xy_m).tolist()
-        range_m = max(1e-6, float(np.hypot(x, y)))
-        across = np.array([-y, x]) / range_m
-        variance_m2 = max(0.0, float(across @ self.covariance_m2 @ across))
-        return float(np.arctan2(variance_m2**0.5, range_m))
+    def fan_rad(self) -> tuple[float, float]:
+        """Right and left edge of the fan that shows this direction."""
+        return fan(self.xy_m, self.covariance_m2, self.camera_xy_m)
 
 
 @dataclass(slots=True, eq=False)

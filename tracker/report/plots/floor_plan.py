@@ -11,7 +11,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb, to_rgba
 from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
-from matplotlib.patches import Ellipse, Wedge
+from matplotlib.patches import Ellipse, Patch, Wedge
+from matplotlib.path import Path as Outline
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import ScaledTranslation
 
@@ -26,6 +27,8 @@ _SIGMAS_95 = 2.448  # square root of chi-square's 95 % quantile for two dimensio
 _GLANCES = 14  # fields of view drawn over each other, so that often-seen places shine brighter
 _HANDS_DRAWN = 50  # per person, the latest
 _STEM_IN = 0.27
+#: From the place at the origin up to the disc, which hides the upper edge; of height 1.
+_TAIL = Outline([(0.0, 0.0), (0.27, 1.0), (-0.27, 1.0), (0.0, 0.0)], closed=True)
 _HALO = [withStroke(linewidth=3.0, foreground=PAPER)]
 
 
@@ -55,11 +58,12 @@ def draw_floor_plan(
     _draw_walls(axes, history)
     if truth is not None and truth.episodes:
         x, y = np.array([row.xy_m for row in truth.episodes]).T
-        axes.scatter(x, y, s=100, c="none", edgecolors=INK, lw=1.3, ls=[(0, (2, 1))], zorder=9)
+        axes.scatter(x, y, s=100, c="none", edgecolors=INK, lw=1.3, zorder=12)
     _draw_paths(axes, history.people.values(), shown)
     for track_id in sorted(shown):
         _draw_person(axes, history.people[track_id], 0.06 * size_m)
-    _draw_key(axes, history.people.values(), truth)
+    has_walls = len(history.walls.hits[0]) > 0
+    _draw_key(axes, history.people.values(), truth, has_walls=has_walls)
     axes.set_title(
         "Who raised a hand, and where", loc="left", fontsize=13, color=INK, weight="bold", pad=8
     )
@@ -158,11 +162,10 @@ def _draw_fan(axes: Axes, hand: RaisedHand, person: Person) -> None:
     color, (x, y) = person_color(person.id), hand.camera_xy_m.tolist()
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     reach_m = 0.45 * min(right - left, top - bottom)
-    middle = np.degrees(hand.bearing_rad)
-    half = max(1.0, 2 * np.degrees(hand.bearing_std_rad))
-    sides = (middle - half, middle + half)
+    sides = np.degrees(hand.fan_rad)
     axes.add_patch(Wedge((x, y), reach_m, *sides, fc=color, ec="none", alpha=0.2, zorder=6))
-    along = reach_m * np.array([np.cos(hand.bearing_rad), np.sin(hand.bearing_rad)])
+    middle_rad = np.radians(sides.mean())
+    along = reach_m * np.array([np.cos(middle_rad), np.sin(middle_rad)])
     axes.annotate(
         f"#{person.id}", (x + along[0], y + along[1]), ha="center", va="center", fontsize=11,
         weight="bold", color=color, path_effects=_HALO, zorder=12,
@@ -170,43 +173,55 @@ def _draw_fan(axes: Axes, hand: RaisedHand, person: Person) -> None:
 
 
 def _draw_pin(axes: Axes, xy_m: FloatArray, color: str, *, is_lit: bool) -> None:
-    """A raised hand on a stem over its place, so that the place itself stays visible."""
+    """A raised hand on a pin whose tip stands at the place, so that the place stays visible."""
     x, y = xy_m.tolist()
     up = ScaledTranslation(0.0, _STEM_IN, axes.figure.dpi_scale_trans)
     above = axes.transData + up
-    axes.annotate(
-        "", (x, y), xytext=(0, 72 * _STEM_IN), textcoords="offset points", zorder=9.5,
-        arrowprops={"arrowstyle": "-", "color": color, "lw": 1.6, "shrinkA": 0, "shrinkB": 0},
-    )  # fmt: skip
     for size, alpha in ((1700, 0.10), (1200, 0.14), (800, 0.24), (500, 1.0)) if is_lit else ():
         axes.scatter(x, y, s=size, c=LIT, alpha=alpha, linewidths=0, zorder=10, transform=above)
+    axes.scatter(
+        x, y, s=(2 * 72 * _STEM_IN) ** 2, marker=_TAIL, c=color, edgecolors=PAPER,
+        linewidths=0.8, zorder=10.5,
+    )  # fmt: skip
     axes.scatter(
         x, y, s=330, c=color, edgecolors=PAPER, linewidths=1.3, zorder=11, transform=above
     )
     axes.scatter(x, y, s=165, marker=HAND, c=PAPER, linewidths=0, zorder=11.5, transform=above)
 
 
-def _draw_key(axes: Axes, people: Collection[Person], truth: EpisodeReport | None) -> None:
+def _draw_key(
+    axes: Axes, people: Collection[Person], truth: EpisodeReport | None, *, has_walls: bool
+) -> None:
     def dot(label: str, **style: Any) -> Line2D:
         return Line2D([], [], ls="none", label=label, **style)
 
     hands = [hand for person in people for hand in person.hands]
-    handles = [
-        dot("hand raised here", marker=HAND, mfc=FADED, mec="none", ms=11),
-        dot("and served", marker="o", mfc=LIT, mec="none", ms=11),
-        dot("95 % certain to be inside", marker="o", mfc="#e3e5e7", mec=FADED, ms=11),
-        dot("camera, and what it saw", marker="^", mfc=ROBOT, mec="none", ms=8),
-        dot("hit by the laser scan", marker="s", mfc=WALL, mec="none", ms=4),
-    ]
+    handles: list[Line2D | Patch] = []
+    if any(hand.mean_xy_m is not None for hand in hands):
+        handles += [
+            dot("a raised hand: the pin\nstands at the place", marker=HAND, mfc=FADED, mec="none",
+                ms=13),
+            dot("lit: the customer who\nis served", marker="o", mfc=LIT, mec="none", ms=12),
+            dot("inside with 95 %\nprobability", marker="o", mfc="#e3e5e7", mec=FADED, ms=12),
+        ]  # fmt: skip
     if any(hand.mean_xy_m is None for hand in hands):
+        fan = Outline([(-1.0, 0.0), (1.0, 0.45), (1.0, -0.45), (-1.0, 0.0)], closed=True)
         handles.append(
-            dot("hand raised in this direction", marker=">", mfc="#d8dfe3", mec="none", ms=10)
-        )
+            dot("a hand raised in this\ndirection: how far away\nis unknown", marker=fan,
+                mfc="#b9c3c9", mec="none", ms=16)
+        )  # fmt: skip
+    handles += [
+        dot("the camera, at the end", marker="^", mfc=ROBOT, mec="none", ms=9),
+        Line2D([], [], color=FADED, lw=0.9, ls=(0, (4, 3)), label="what it sees at the end"),
+        Patch(fc="#fbf3da", ec="none", label="what it has seen"),
+    ]
+    if has_walls:
+        handles.append(dot("hit by the laser scan", marker="s", mfc=WALL, mec="none", ms=4))
     if truth is not None:
-        handles.append(dot("where the person really was", marker="o", mfc="none", mec=INK, ms=8))
+        handles.append(dot("where the person really\nwas", marker="o", mfc="none", mec=INK, ms=8))
     key = axes.legend(
-        handles=handles, loc="upper right", fontsize=8, labelcolor=INK, frameon=True,
-        facecolor=PAPER, edgecolor="none", framealpha=0.85, labelspacing=0.7,
+        handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5,
+        labelcolor=INK, frameon=False, labelspacing=0.9, borderaxespad=0.0,
     )  # fmt: skip
     key.set_zorder(20)
 

@@ -16,6 +16,8 @@ from tracker.report.plots.floor_plan import draw_floor_plan
 from tracker.report.plots.timeline import draw_timeline, lanes_of
 
 _WIDTH_IN = 10.0
+#: Room for the key beside the floor plan, and how large that is.
+_KEY_IN, _LEAST_HIGH_IN, _MOST_HIGH_IN, _LEAST_WIDE_IN = 2.1, 3.4, 6.6, 4.5
 _DOTS_PER_INCH = 160
 #: Around a camera that knows directions alone so much is shown.
 _FAN_M, _DIRECTIONS = 2.0, np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
@@ -41,13 +43,16 @@ def draw_overview(
     lanes = lanes_of(history, truth)
     low, high = _extent(history, truth)
     left, width = 0.065, 0.915
-    room_wide = width * _WIDTH_IN
-    room_high = float(np.clip(room_wide * (high - low)[1] / (high - low)[0], 3.4, 5.8))
+    most_wide, aspect = width * _WIDTH_IN - _KEY_IN, (high - low)[1] / (high - low)[0]
+    room_high = float(np.clip(most_wide * aspect, _LEAST_HIGH_IN, _MOST_HIGH_IN))
+    room_wide = float(np.clip(room_high / aspect, _LEAST_WIDE_IN, most_wide))
     low, high = _widen(low, high, room_wide / room_high)
     time_high = 0.2 + 0.46 * max(1, len(lanes))
     figure_high = room_high + time_high + 1.62
     figure = Figure(figsize=(_WIDTH_IN, figure_high), dpi=_DOTS_PER_INCH, facecolor=PAPER)
-    at = (left, (time_high + 1.22) / figure_high, width, room_high / figure_high)
+    at = (
+        left, (time_high + 1.22) / figure_high, room_wide / _WIDTH_IN, room_high / figure_high,
+    )  # fmt: skip
     room = figure.add_axes(at)
     time = figure.add_axes((left, 0.5 / figure_high, width, time_high / figure_high))
     shown = {lane.person.id for lane in lanes if lane.person}
@@ -82,7 +87,7 @@ def _extent(history: History, truth: EpisodeReport | None) -> tuple[FloatArray, 
 
 
 def _widen(low: FloatArray, high: FloatArray, aspect: float) -> tuple[FloatArray, FloatArray]:
-    """The same view, `aspect` times as wide as high; room to the right is for the key."""
+    """The same view, `aspect` times as wide as high."""
     width, height = high - low
-    right, above = np.maximum(0.0, [height * aspect - width, width / aspect - height])
-    return low - np.array([0.0, above / 2]), high + np.array([right, above / 2])
+    margin = np.maximum(0.0, [height * aspect - width, width / aspect - height]) / 2
+    return low - margin, high + margin

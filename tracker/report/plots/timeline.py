@@ -157,13 +157,14 @@ def _runs(at: FloatArray, is_on: BoolArray) -> list[tuple[float, float]]:
 
 def _draw_legend(axes: Axes, history: History, lanes: list[Lane]) -> None:
     handles: list[Patch | Line2D] = [
+        Line2D([], [], color=FADED, lw=1.4, ls=(0, (1, 1.2)), label="seen, has not called yet"),
         Line2D([], [], color=INK, lw=0.9, alpha=0.8, label="exists (0 to 1)"),
         Patch(fc=FADED, ec="none", label="hand up"),
         Patch(fc=_FRESH, ec="none", label="fresh"),
         Patch(fc=LIT, ec="none", alpha=0.75, label="served"),
     ]
     if any(lane.truth for lane in lanes):
-        handles.append(Patch(fc="none", ec=INK, lw=0.9, label="truth"))
+        handles.append(Patch(fc="none", ec=INK, lw=0.9, label="really up"))
     legend = axes.legend(
         handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=len(handles),
         frameon=False, fontsize=8, labelcolor=INK, handlelength=1.6, columnspacing=1.4,

@@ -104,7 +104,7 @@ def summary_table(history: History) -> Table:
             f"#{person.id}",
             f"{history.seconds(hand.start_ns):.1f} s",
             f"{_length_s(history, hand):.1f} s" + ("" if hand.end_ns else " +"),
-            f"{np.degrees(hand.bearing_rad):.0f}°",
+            f"{np.degrees(hand.direction_rad[0]):.0f}°",
             *where,
             f"{served_s:.1f} s" if served_s else "-",
         )
@@ -125,8 +125,8 @@ def _person(history: History, person: Person) -> dict[str, Any]:
                 "frames": hand.frames,
                 "xy_m": None if hand.mean_xy_m is None else _numbers(hand.mean_xy_m),
                 "std_m": round(_std_m(hand), 6),
-                "bearing_deg": round(float(np.degrees(hand.bearing_rad)), 3),
-                "bearing_std_deg": round(float(np.degrees(hand.bearing_std_rad)), 3),
+                "bearing_deg": round(float(np.degrees(hand.direction_rad[0])), 3),
+                "bearing_std_deg": round(float(np.degrees(hand.direction_rad[1])), 3),
             }
             for hand in person.hands
         ],

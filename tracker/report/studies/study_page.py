@@ -13,6 +13,7 @@ from tracker.report.palette import PAPER
 from tracker.report.provenance import provenance_section, settings_section
 from tracker.report.studies.study_plot import draw_distribution, draw_filter, draw_gospa_parts
 from tracker.report.studies.study_table import study_table
+from tracker.report.studies.trial_words import trial_words
 from tracker.wording import counted
 
 _WORST = 8
@@ -43,7 +44,11 @@ def study_page(study: Study, *, command: str = "") -> Page:
 
 
 def _headlines(study: Study) -> Facts:
-    known = [figure for figure in study.figures if np.isfinite(figure.value)]
+    known = [
+        figure
+        for figure in study.figures
+        if np.isfinite(figure.value) and not figure.name.startswith(" ")  # a part of another one
+    ]
     return Facts(
         tuple(
             (
@@ -57,6 +62,8 @@ def _headlines(study: Study) -> Facts:
 
 
 def _verdict(study: Study) -> tuple[Part, ...]:
+    if isinstance(study, PeopleStudy):
+        return (Text((study.remark,)),)
     judged = [figure for figure in study.figures if figure.as_expected is not None]
     if not judged:
         return ()
@@ -92,7 +99,7 @@ def _histograms(study: Study) -> tuple[Part, ...]:
     figure = Figure(figsize=(6.6, 1.9 * lines), facecolor=PAPER, layout="constrained")
     grid = figure.subplots(lines, 3, squeeze=False).flat
     for axes, (name, values) in zip(grid, varied.items(), strict=False):
-        draw_distribution(axes, values, name)
+        draw_distribution(axes, values, trial_words(name))
     for axes in list(grid.base.flat)[len(varied) :]:
         axes.set_axis_off()
     return (Picture.plot(figure, "How often each value came; the line is the mean."),)
@@ -105,9 +112,9 @@ def _quantiles(study: Study) -> Table:
         cells = ["-"] * len(_QUANTILES)
         if len(finite):
             cells = [f"{value:.3g}" for value in np.quantile(finite, _QUANTILES)]
-        rows.append((name, *cells, str(len(values) - len(finite))))
-    names = ("least", "5 %", "25 %", "median", "75 %", "95 %", "most")
-    columns = ("of a trial", *names, "without")
+        rows.append((trial_words(name), *cells, str(len(values) - len(finite))))
+    names = ("smallest", "5 %", "25 %", "median", "75 %", "95 %", "largest")
+    columns = ("figure of a trial", *names, "trials without")
     return Table(columns, tuple(rows), numeric=frozenset(range(1, len(columns))))
 
 
@@ -120,7 +127,7 @@ def _worst(study: Study) -> tuple[Part, ...]:
         (str(trial), *(f"{study.rows[key][trial]:.3g}" for key in (name, *shown)))
         for trial in worst
     )
-    columns = ("trial", name, *shown)
+    columns = ("trial", *map(trial_words, (name, *shown)))
     table = Table(columns, rows, numeric=frozenset(range(len(columns))))
     again = (
         "Trial i of a seed is the same in every study. From Python, with the study's scenario and "

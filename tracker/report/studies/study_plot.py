@@ -7,28 +7,23 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from tracker.containers import FloatArray
 from tracker.evaluation.metrics.consistency import mean_bounds
 from tracker.evaluation.studies.study import FilterStudy, KnownPeopleStudy, PeopleStudy, Study
 from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
+from tracker.report.studies.trial_words import trial_words
 from tracker.wording import counted
 
-_GOSPA_PARTS = ("localisation", "missed", "false")
-_KNOWN_PEOPLE = (
-    ("mse_m2", "mean squared error (m$^2$)"),
-    ("final_nees", "NEES of found people (ideal 4)"),
-    ("wrong_share", "wrong measurements, share"),
-    ("swapped_share", "people swapped, share"),
-)
+_GOSPA_PARTS = {
+    "localisation": "error of places", "missed": "people missed", "false": "false tracks",
+}  # fmt: skip
+_KNOWN_PEOPLE = ("mse_m2", "final_nees", "wrong_share", "swapped_share")
 _DISTRIBUTIONS = (
-    ("gospa_m", "GOSPA (m)"),
-    ("identity_switches_per_min", "identity switches a minute"),
-    ("time_to_raise_s", "time to raise (s)"),
-    ("rmse_m", "RMSE of found people (m)"),
-    ("nees_position", "NEES of the position (ideal 2)"),
-    ("covered_share", "inside the 95 % ellipse, share"),
-)
+    "gospa_m", "identity_switches_per_min", "time_to_raise_s",
+    "rmse_m", "nees_position", "covered_share",
+)  # fmt: skip
 
 
 def draw_study(study: Study, path: str | Path) -> None:
@@ -41,17 +36,18 @@ def draw_study(study: Study, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    figure = Figure(figsize=(12.0, 4.4), dpi=160, facecolor=PAPER, layout="constrained")
+    figure = Figure(figsize=(13.0, 4.8), dpi=160, facecolor=PAPER, layout="constrained")
     if isinstance(study, FilterStudy):
         error, nees = figure.subplots(1, 2)
         draw_filter(error, nees, study)
     elif isinstance(study, KnownPeopleStudy):
-        for axes, (name, title) in zip(figure.subplots(1, 4), _KNOWN_PEOPLE, strict=True):
-            draw_distribution(axes, study.rows[name], title)
+        for axes, name in zip(figure.subplots(1, 4), _KNOWN_PEOPLE, strict=True):
+            draw_distribution(axes, study.rows[name], trial_words(name))
     else:
         _draw_people(figure, study)
+    lines = "" if isinstance(study, FilterStudy) else "; upright lines: the means"
     figure.suptitle(
-        f"{study.name}: {counted(study.trials, 'trial')} of seed {study.seed}", color=INK
+        f"{study.name}: {counted(study.trials, 'trial')} of seed {study.seed}{lines}", color=INK
     )
     figure.savefig(path, format="png")
 
@@ -68,7 +64,7 @@ def draw_filter(error: Axes, nees: Axes, study: FilterStudy) -> None:
     nees.axhline(4.0, color=FADED, linewidth=0.8)
     nees.plot(at_s, study.nees, color=PERSON_COLORS[1], label="mean NEES")
     nees.set(xlabel="time (s)", ylabel="NEES (ideal 4)")
-    nees.legend(frameon=False)
+    nees.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     _plain(error)
     _plain(nees)
 
@@ -76,21 +72,23 @@ def draw_filter(error: Axes, nees: Axes, study: FilterStudy) -> None:
 def _draw_people(figure: Figure, study: PeopleStudy) -> None:
     grid = figure.add_gridspec(2, 5)
     draw_gospa_parts(figure.add_subplot(grid[:, :2]), study)
-    for place, (name, title) in enumerate(_DISTRIBUTIONS):
+    for place, name in enumerate(_DISTRIBUTIONS):
         axes = figure.add_subplot(grid[place // 3, 2 + place % 3])
-        draw_distribution(axes, study.rows[name], title)
+        draw_distribution(axes, study.rows[name], trial_words(name))
 
 
 def draw_gospa_parts(axes: Axes, study: PeopleStudy) -> None:
     """Draw each trial's GOSPA by its parts, the best trial first."""
-    order = np.argsort(study.rows["gospa_m"])
+    order = np.argsort(sum(study.rows[f"gospa_{part}"] for part in _GOSPA_PARTS))
     below = np.zeros(study.trials)
-    for part, color in zip(_GOSPA_PARTS, PERSON_COLORS, strict=False):
+    for (part, words), color in zip(_GOSPA_PARTS.items(), PERSON_COLORS, strict=False):
         values = study.rows[f"gospa_{part}"][order]
-        axes.bar(np.arange(study.trials), values, 1.0, below, color=color, label=part)
+        axes.bar(np.arange(study.trials), values, 1.0, below, color=color, label=words)
         below += values
-    axes.set(xlabel="trials, best first", ylabel="GOSPA squared, by parts (m$^2$)")
-    axes.legend(frameon=False)
+    axes.set(xlabel="trials, best first", ylabel="GOSPA squared, by parts (m²)")
+    axes.set_xticks([])
+    axes.set_ylim(0.0, 1.25 * max(float(below.max()), 1e-9))  # room for the legend
+    axes.legend(frameon=False, loc="upper left", ncols=len(_GOSPA_PARTS), columnspacing=1.0)
     _plain(axes)
 
 
@@ -106,7 +104,9 @@ def draw_distribution(axes: Axes, values: FloatArray, title: str) -> None:
     if len(values):
         axes.hist(values, bins=min(20, max(5, len(values) // 4)), color=PERSON_COLORS[0])
         axes.axvline(float(values.mean()), color=INK, linewidth=1.2)
-    axes.set(xlabel=title, ylabel="trials")
+    axes.set_xlabel(title, fontsize=9, wrap=True)
+    axes.set_ylabel("trials", fontsize=9)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
     _plain(axes)
 
 

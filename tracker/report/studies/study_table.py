@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tracker.evaluation.studies.study import Figure, Study, study_as_dict
+from tracker.evaluation.studies.study import Figure, PeopleStudy, Study, study_as_dict
 from tracker.outputs import writing_into
 from tracker.report.studies.study_plot import draw_study
 from tracker.wording import counted
@@ -27,6 +27,8 @@ def study_table(study: Study) -> Table:
         title=f"{study.name}: {counted(study.trials, 'trial')} of seed {study.seed}\n"
         f"{study.scenario.title}",
         title_justify="left",
+        caption=study.remark if isinstance(study, PeopleStudy) else None,
+        caption_justify="left",
     )
     table.add_column("figure", no_wrap=True)
     for name in ("value", "95 % interval", "expected"):

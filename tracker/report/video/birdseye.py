@@ -7,7 +7,9 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
-from tracker.containers import FloatArray, FrameResult, ImageArray, SensorKind
+from tracker.containers import FloatArray, FrameResult, ImageArray, SensorKind, Tracks
+from tracker.geometry import worst_std
+from tracker.report.fan import PLACED_STD_M, fan
 from tracker.report.palette import FADED, INK, LIT, PAPER, ROBOT, WALL, as_bgr, person_color
 
 #: Camera of the specification: 640 columns at a focal length of 460.
@@ -17,6 +19,7 @@ _SIDE_PX = 480
 _SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
 _ROBOT_AT = 0.84  # of the height, from the top: most of what matters is ahead
 _SIGMAS_95 = 2.448  # square root of chi-square's 95 % quantile for two dimensions
+_FAN_OF_HEIGHT = 0.62  # reach of a direction, of the picture's height
 _UNSEEN = (236, 238, 238)
 _RING = (222, 224, 224)
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
@@ -114,6 +117,10 @@ class _View:
         tracks = result.tracks
         if len(tracks) == 0:
             return
+        is_placed = worst_std(tracks.covariance[:, :2, :2]) <= PLACED_STD_M
+        for row in np.flatnonzero(~is_placed & tracks.confirmed):
+            self._draw_fan(picture, tracks, int(row))
+        tracks = tracks[is_placed | ~tracks.confirmed]
         centers = self.pixels(tracks.mean[:, :2])
         turn = self._picture_from_fixed
         covariances = turn @ tracks.covariance[:, :2, :2] @ turn.T
@@ -125,13 +132,36 @@ class _View:
             if is_selected:
                 cv2.circle(picture, at, 22 << _SHIFT, as_bgr(LIT), 4, cv2.LINE_AA, _SHIFT)
             _ellipse(picture, center, np.minimum(covariances[row], limit**2), color)
-            is_up = bool(tracks.raised[row])
-            cv2.circle(picture, at, 9 << _SHIFT, color, -1 if is_up else 2, cv2.LINE_AA, _SHIFT)
-            parts = [f"#{track_id}", "HAND UP" if is_up else "", "SERVED" if is_selected else ""]
-            words = " ".join(filter(None, parts))
-            length = cv2.getTextSize(words, _FONT, 0.5, 1)[0][0]
-            left = min(int(center[0]) + 16, int(self._size[0]) - length - 6)
-            _text(picture, words, (max(4, left), int(center[1]) - 16), INK, 0.5)
+            filled = -1 if tracks.raised[row] else 2
+            cv2.circle(picture, at, 9 << _SHIFT, color, filled, cv2.LINE_AA, _SHIFT)
+            self._name(picture, tracks, int(row), center)
+
+    def _draw_fan(self, picture: ImageArray, tracks: Tracks, row: int) -> None:
+        """Somebody of whom the direction alone is known."""
+        right_rad, left_rad = fan(
+            tracks.mean[row, :2], tracks.covariance[row, :2, :2], self._camera[:2]
+        )
+        # A narrow fan is a pair of edges; a wide one needs points between them.
+        sides = np.linspace(right_rad, left_rad, 9)
+        reach_m = _FAN_OF_HEIGHT * float(self._size[1]) / self._scale
+        rim = self._camera[:2] + reach_m * np.stack([np.cos(sides), np.sin(sides)], axis=-1)
+        corners = self.pixels(np.vstack([self._camera[:2], rim]))
+        points = np.round(corners * (1 << _SHIFT)).astype(np.int32)
+        tinted = picture.copy()
+        color = as_bgr(person_color(int(tracks.id[row])))
+        cv2.fillPoly(tinted, [points], color, cv2.LINE_AA, _SHIFT)
+        cv2.addWeighted(tinted, 0.3, picture, 0.7, 0.0, dst=picture)
+        cv2.polylines(picture, [points], True, color, 1, cv2.LINE_AA, _SHIFT)
+        self._name(picture, tracks, row, corners[len(corners) // 2])
+
+    def _name(self, picture: ImageArray, tracks: Tracks, row: int, at: FloatArray) -> None:
+        track_id = int(tracks.id[row])
+        is_up, is_selected = bool(tracks.raised[row]), track_id == tracks.selected_id
+        parts = [f"#{track_id}", "HAND UP" if is_up else "", "SERVED" if is_selected else ""]
+        words = " ".join(filter(None, parts))
+        length = cv2.getTextSize(words, _FONT, 0.5, 1)[0][0]
+        left = min(int(at[0]) + 16, int(self._size[0]) - length - 6)
+        _text(picture, words, (max(4, left), max(14, int(at[1]) - 16)), INK, 0.5)
 
 
 def _ellipse(

@@ -172,7 +172,7 @@ def _status(hands: Hands, tracks: Tracks | None, config: Config) -> _Label:
     if config.raise_rule == "evidence":
         rule = "up by evidence, from 0.5"
     elif config.raise_rule == "palm":
-        rule = f"up from {config.palm_raised_threshold:g} palms"
+        rule = f"up from {config.palm_raised_threshold:g} palm lengths"
     else:
         rule = f"up from {config.hand_raised_threshold:g} image heights"
     variants = (" | ".join([*parts, rule]), " | ".join(parts), " | ".join(short), short[0])

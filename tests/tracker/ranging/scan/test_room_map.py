@@ -75,3 +75,12 @@ def test_things_on_an_occupied_cell_are_furniture_and_fade_out_beside_it(resolut
 def test_half_occupied_counts_as_free():
     cells = np.full((3, 3), 50)
     assert np.isinf(RoomMap.of(grid_of(cells)).distance_m(np.array([[0.1, 0.1]])))
+
+
+def test_a_map_is_drawn_where_it_is_asked():
+    room = RoomMap.of(with_post(origin=(3.0, 1.0, 0.5)))
+    assert room.located.origin == pytest.approx((3.0, 1.0, 0.5))
+    map_from_odom = RigidTransform.from_planar(1.0, -2.0, np.pi / 2)
+    x_m, y_m, yaw_rad = room.seen_from(map_from_odom).located.origin
+    # Seen from odom at (1, -2) that looks along the map's y axis: (2, 3) away is 3 ahead, 2 right.
+    assert (x_m, y_m, yaw_rad) == pytest.approx((3.0, -2.0, 0.5 - np.pi / 2))

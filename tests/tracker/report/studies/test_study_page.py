@@ -34,6 +34,22 @@ def test_the_worst_trials_are_named_worst_first_so_that_they_can_be_repeated():
     assert f"config, 3, {worst[0]}, 1)" in words.paragraphs[0]
 
 
+def test_a_study_of_people_says_where_false_raises_come_from():
+    scenario = dataclasses.replace(SCENARIOS["people"], duration_s=2.0)
+    page = study_page(monte_carlo(scenario, 2))
+    (_, words) = parts_of(page, "Figures")
+    assert "0.2 raised hands on average are nobody's" in words.paragraphs[0]
+    (_, facts) = parts_of(page, "In short")
+    assert not any("(m²)" in item[0] for item in facts.items), "parts of GOSPA are no headlines"
+
+
+def test_columns_are_words_with_units():
+    page = study_page(monte_carlo("model-matched", 3))
+    (table, _) = parts_of(page, "Worst trials")
+    assert table.columns[:2] == ("trial", "mean squared error of the position (m²)")
+    assert "mse_m2" not in page.html()
+
+
 def test_a_figure_off_its_expectation_is_marked():
     study = monte_carlo("model-matched", 50, config=None)
     wrong = dataclasses.replace(

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,19 @@ def test_only_the_selected_customer_is_lit(result_of):
     assert lit is not None
     assert lit[0] > 240  # person 2 is on the right
     assert where(draw_birdseye(result_of(0, *people)), LIT) is None
+
+
+def test_somebody_of_unknown_distance_is_a_fan_and_no_place(result_of):
+    result = result_of(0, (1, 0.0, 3.0, True), sensor_pose=np.array([0.0, 0.0, np.pi / 2]))
+    spread = np.diag([0.01, 4.0, 0.1, 0.1])[None]  # known across the ray alone
+    unplaced = replace(result, tracks=replace(result.tracks, covariance=spread))
+    picture, empty = draw_birdseye(unplaced), draw_birdseye(result_of(0))
+    changed = np.any(picture != empty, axis=-1)
+    ahead, aside = changed[120:396, 230:250], changed[120:396, 360:]
+    assert ahead.any(axis=1).all(), "from the camera to the rim"
+    assert not aside.any()
+    at_place = round(480 * 0.84 * (1 - 3.0 / 4.0)), 240
+    assert tuple(picture[at_place]) != as_bgr(person_color(1)), "no disc where nobody may stand"
 
 
 def test_nothing_far_away_or_unknown_breaks_the_picture(result_of):
