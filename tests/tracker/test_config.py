@@ -1,6 +1,7 @@
 """The configuration against the specification's own words, and what it says about mistakes."""
 
 import os
+import re
 
 import pytest
 
@@ -256,6 +257,7 @@ def test_a_file_that_is_no_text_is_named(tmp_path):
 def test_every_parameter_has_a_description_a_group_and_a_stated_range():
     for name, info in Config.model_fields.items():
         assert info.description, name
-        assert info.description.rstrip(".") != info.description or "..." in info.description, name
+        assert re.fullmatch(r"[A-Z`].*[.]", info.description), name
+        assert "..." not in info.description, f"{name}: a description stands alone"
         assert set(parameter_extra(name)) == {"unit", "group", "level", "live", "search"}, name
         assert allowed_values(name), name
