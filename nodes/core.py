@@ -413,7 +413,7 @@ class NodeCore:
 
     def _image_of(self, message: Encoded) -> CameraImage:
         (image,) = decode(*message, max_pixels=self._config.picture_max_pixels)
-        assert isinstance(image, CameraImage), "the shell subscribes to images only"
+        assert isinstance(image, CameraImage), "only images are subscribed to"
         return image
 
     def _note_reset(self, reason: str) -> None:

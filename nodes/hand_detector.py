@@ -103,7 +103,7 @@ def _spin(make_node: Callable[[], HandDetector], is_over: threading.Event) -> in
     while not is_over.wait(0.5) and node.is_alive and spinning.is_alive():
         pass
     if not is_over.is_set():
-        node.get_logger().fatal("The worker has ended by a mistake; it is printed above.")
+        node.get_logger().fatal("The worker thread stopped with an error, which is printed above.")
     executor.shutdown()
     spinning.join()
     node.destroy_node()

@@ -217,8 +217,8 @@ class Pipeline:
         if self._size not in (None, size):
             self._note(
                 NoteKind.PICTURE_SIZE_CHANGED,
-                f"pictures of {image.width}x{image.height} follow others: hands are followed only "
-                "through pictures of one size",
+                f"pictures of {image.width}x{image.height} follow pictures of another size: "
+                "hands cannot be followed from one size to another",
             )
         self._size = size
         if image.remark:
@@ -267,7 +267,7 @@ class Pipeline:
         beyond = len(hands) - np.count_nonzero(measurements.hand >= 0)
         if beyond:
             end_deg = np.rad2deg(self.camera.lens.max_off_axis_rad)
-            text = f"{beyond} hands beyond the lens's range of {end_deg:.0f} degrees: no bearing"
+            text = f"{beyond} hands outside the lens's {end_deg:.0f} degrees: no bearing"
             self._note(NoteKind.HAND_BEYOND_LENS, text)
         if scan is not None:
             self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
@@ -377,7 +377,7 @@ class Pipeline:
         if place.is_first and self.tracker.has_tracks:
             self._note(
                 NoteKind.NEW_FIXED_FRAME,
-                "the first transform has come: tracks start again in the fixed frame",
+                "the first transform was received: tracking starts again in the fixed frame",
             )
             self.tracker.reset()
             self._memory.background.reset()
@@ -394,7 +394,8 @@ class Pipeline:
             ahead_s = (kept.stamp_ns - stamp_ns) / 1e9
             self._note(
                 NoteKind.CALLS_OF_LATER,
-                f"the kept waiting list is {ahead_s:.1f} s later than the images: it begins empty",
+                f"the stored waiting list is {ahead_s:.1f} s later than the images: it starts "
+                "empty",
             )
 
     def _choose_scan(

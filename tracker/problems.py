@@ -70,7 +70,7 @@ class Problems:
             return
         text = (
             f"{self._first_unlocated.rstrip('.')} (so in {self._unlocated} of "
-            f"{counted(self._frames, 'image')}: no pose there, and no place in the fixed frame)"
+            f"{counted(self._frames, 'image')}: no pose there, and no position in the fixed frame)"
         )
         if self._unlocated > _LOST_SHARE * self._frames:
             self.add("missing transforms", text)

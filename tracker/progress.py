@@ -121,14 +121,14 @@ def trials_bar(
 
         def announce(scenes: int) -> None:
             if scenes == 0:
-                console.print("Judging the best on what no trial has seen ...", highlight=False)
+                console.print("Testing the best on data that no trial used ...", highlight=False)
 
         say = _now_and_then(console)
         yield lambda done, best: say(f"{done} of {trials} ... best {best:.4g}"), announce
         return
     with Progress(*columns, console=console) as progress:
         task = progress.add_task("Trying", total=trials, best="")
-        verdict = progress.add_task("Judging on the unseen", total=unseen, best="", one_line=False)
+        verdict = progress.add_task("Final test", total=unseen, best="", one_line=False)
 
         def report(done: int, best: float) -> None:
             text = "" if isnan(best) else f"best {best:.4g}"
@@ -195,7 +195,7 @@ def fetch_models_if_needed(console: Console) -> None:
     found = {row.state for row in store.status()} - {ModelState.PRESENT}
     states = " or ".join(sorted(state.value for state in found))
     console.print(
-        f"The hand models are {states}; fetching them once, to {store.directory}",
+        f"The hand models are {states}; they are fetched once, to {store.directory}",
         highlight=False,
         soft_wrap=True,
     )

@@ -114,7 +114,7 @@ def replay(
         if not recording.has_images:
             if not recording.has_scans or recording.image_topics:
                 recording.require_images()
-            problems.remark("no images in the recording: nobody can be seen raising a hand")
+            problems.remark("no images in the recording: raised hands cannot be found")
         pipeline = Pipeline(config, detector, watch=watch, image_topic=recording.read_topics.image)
         held.enter_context(FolderLock(out))
         with ReplayOutputs(out, config) as outputs:
@@ -194,7 +194,7 @@ def _feed(pipeline: Pipeline, event: Event, log_ns: int, problems: Problems) -> 
         problems.add("unusable transform", str(error))
         return
     if verdict is not None and verdict.is_refused and isinstance(event, CameraImage):
-        text = f"image left out: its stamp {event.stamp_ns / 1e9:.3f} s is {verdict.value}"
+        text = f"image skipped: its stamp {event.stamp_ns / 1e9:.3f} s is {verdict.value}"
         if verdict is Verdict.LATE:
             problems.remark(text, kind=verdict.name)
         else:
@@ -234,6 +234,6 @@ def _note_missing(
     problems.add(
         "missing transforms",
         f"no transform from {config.camera_frame!r} to {config.fixed_frame!r} at any image's "
-        f"stamp, so nobody has a pose; frames heard of: {heard}. Set camera_frame and "
+        f"stamp, so nobody has a pose; known frames: {heard}. Set camera_frame and "
         f"fixed_frame, or fixed_frame: {config.camera_frame} to track relative to the camera.",
     )

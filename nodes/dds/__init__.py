@@ -14,7 +14,7 @@ try:
     import cyclonedds  # noqa: F401  # is it there at all?
 except ModuleNotFoundError as missing:
     raise ConfigError(
-        "Cyclone DDS is not installed; needed is the extra `dds`: "
+        "Cyclone DDS is not installed. Install the extra `dds`: "
         "pip install '.[dds]' in the project's folder."
     ) from missing
 

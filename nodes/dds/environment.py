@@ -62,7 +62,7 @@ def domain_settings(environment: Mapping[str, str]) -> DomainSettings:
     """
     text = environment.get("ROS_DOMAIN_ID") or "0"
     if not text.isascii() or not text.isdigit() or int(text) > LAST_DOMAIN:
-        raise ConfigError(f"ROS_DOMAIN_ID is {text!r}; needed is a number, 0 to {LAST_DOMAIN}.")
+        raise ConfigError(f"ROS_DOMAIN_ID is {text!r}; expected a number, 0 to {LAST_DOMAIN}.")
     reach = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
     if reach not in _RANGES:
         raise ConfigError(

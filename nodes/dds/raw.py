@@ -79,7 +79,7 @@ class RawTopic(Topic):  # type: ignore[misc]  # cyclonedds has no types
                 length.value = 0
                 return
         raise ConfigError(
-            "The installed cyclonedds is not the one this was made for; needed is 11.0.1: "
+            "The installed cyclonedds is not the supported version, 11.0.1. Run "
             "pip install '.[dds]' in the project's folder."
         )
 

@@ -13,14 +13,14 @@ import typer
 from tracker.errors import ConfigError
 
 JobsOption = Annotated[
-    int, typer.Option("--jobs", "-j", help="Processes; 0 is one per core.", min=0)
+    int, typer.Option("--jobs", "-j", help="Number of processes; 0 means one per core.", min=0)
 ]
 ExecutorOption = Annotated[
     str,
     typer.Option(
         "--executor",
-        help="Who runs the trials: processes (of this machine), or a Dask cluster by the address "
-        "of its scheduler, dask://host:port.",
+        help="What runs the trials: processes (on this machine), or a Dask cluster, given as the "
+        "address of its scheduler, dask://host:port.",
     ),
 ]
 
@@ -48,7 +48,8 @@ def open_executor(executor: str, jobs: int, units: int) -> Iterator[Executor | N
             yield cluster
     else:
         raise ConfigError(
-            f"--executor is {executor!r}; needed is processes, or an address as dask://host:8786."
+            f"--executor is {executor!r}; expected processes, or an address such as "
+            "dask://host:8786."
         )
 
 

@@ -21,15 +21,19 @@ errors = Console(stderr=True)
 
 ConfigOption = Annotated[
     Path | None,
-    typer.Option("--config", "-c", help="ROS parameter file, as config/hand_detector.yaml."),
+    typer.Option("--config", "-c", help="ROS parameter file, such as config/hand_detector.yaml."),
 ]
 ParameterOption = Annotated[
     list[str] | None,
-    typer.Option("--param", "-p", help="One parameter, as in -p ranging:=spec; may be repeated."),
+    typer.Option(
+        "--param", "-p", help="Set one parameter, such as -p ranging:=spec. May be repeated."
+    ),
 ]
 ReportOption = Annotated[
     Path | None,
-    typer.Option(help="A page with plots and tables: one .html file that needs nothing else."),
+    typer.Option(
+        help="Write a page with plots and tables: one .html file that needs no other file."
+    ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 
@@ -71,7 +75,7 @@ def check_is_no_folder(option: str, path: Path | None) -> None:
         ConfigError: It is a folder.
     """
     if path is not None and path.is_dir():
-        raise ConfigError(f"{option} is {path}, a folder; needed is the name of a file.")
+        raise ConfigError(f"{option} is {path}, a folder; expected the name of a file.")
 
 
 def check_is_no_file(option: str, path: Path) -> None:
@@ -81,7 +85,7 @@ def check_is_no_file(option: str, path: Path) -> None:
         ConfigError: It is a file.
     """
     if path.exists() and not path.is_dir():
-        raise ConfigError(f"{option} is {path}, a file; needed is the name of a folder.")
+        raise ConfigError(f"{option} is {path}, a file; expected the name of a folder.")
 
 
 def print_json(document: Any) -> None:

@@ -26,7 +26,7 @@ def parameters_command(
         list[str] | None,
         typer.Argument(
             metavar="[NAME]...",
-            help="Show these alone, basic or expert.",
+            help="Show only these, basic or expert.",
             autocompletion=_begins_with,
         ),
     ] = None,

@@ -90,7 +90,7 @@ def select(batch: _Batch, rows: Any) -> _Batch:
             part = each[rows]
             if part.ndim != each.ndim:
                 raise ShapeError(
-                    f"Rows {rows!r} were asked for; needed: a mask, a slice or a list of numbers."
+                    f"Rows {rows!r} were given; expected a mask, a slice or a list of numbers."
                 )
             chosen[name] = sealed(part)
     return trusted(type(batch), **chosen)
@@ -113,7 +113,7 @@ def numbers(name: str, value: ArrayLike) -> FloatArray:
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ShapeError(f"`{name}` is {value!r}; needed is an array of numbers.") from error
+        raise ShapeError(f"`{name}` is {value!r}; expected an array of numbers.") from error
 
 
 def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
@@ -126,4 +126,4 @@ def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
         column[...] = value
     except (TypeError, ValueError, OverflowError) as error:
         shape = numbers(name, value).shape
-        raise ShapeError(f"`{name}` has shape {shape}; needed is {column.shape}.") from error
+        raise ShapeError(f"`{name}` has shape {shape}; expected {column.shape}.") from error

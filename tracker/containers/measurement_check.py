@@ -35,8 +35,8 @@ _POSITIONS = frozenset({int(SensorKind.POSITION)})
 
 #: Covariances that may be zero, and when to leave them out.
 _WITHOUT = {
-    "sensor_pose_covariance": "Leave it out (None) where the sensor's pose is well known.",
-    "bias_covariance": "Leave it out (None) where no part of the error lasts.",
+    "sensor_pose_covariance": "Leave it out (None) if the sensor's pose is well known.",
+    "bias_covariance": "Leave it out (None) if no part of the error lasts.",
 }
 
 #: What becomes of rows that a tracker cannot use.
@@ -60,7 +60,7 @@ def check_measurements(claims: Measurements) -> None:
     row = int(np.flatnonzero(np.logical_or.reduce([fault.rows for fault in faults]))[0])
     fault = next(fault for fault in faults if fault.rows[row])
     raise MeasurementError(
-        f"Row {row} of {len(claims)} measurements has {fault.got(row)}; needed: {fault.needed}. "
+        f"Row {row} of {len(claims)} measurements has {fault.got(row)}; expected: {fault.needed}. "
         f"{fault.remedy}"
     )
 
@@ -178,8 +178,8 @@ def _faults_of_values(values: FloatArray, kind: FloatArray) -> Iterator[_Fault]:
     yield _Fault(
         (absent & ~is_nan).any(axis=1),
         lambda row: f"values {values[row].tolist()} and kind {SensorKind(kind[row]).name}",
-        "NaN in the place of what this kind does not measure",
-        "Use polar, which chooses the kind by what is NaN.",
+        "NaN for the numbers that this kind does not measure",
+        "Use polar, which chooses the kind by the NaN values.",
     )
     limit = f"a finite number below {ABSURD_M:g}"
     yield _Fault(
@@ -224,7 +224,7 @@ def _faults_of_noise(covariance: FloatArray, kind: FloatArray) -> Iterator[_Faul
         wrong.any(axis=1) | ~is_definite,
         lambda row: f"the covariance {covariance[row].tolist()}",
         f"a symmetric positive definite matrix, variances between {VARIANCE_MIN:g} and "
-        f"{VARIANCE_MAX:g}; 1 and no correlation in the place of what is not measured",
+        f"{VARIANCE_MAX:g}; 1 and no correlation for numbers that are not measured",
         "State the sensor's true noise.",
     )
 

@@ -49,7 +49,7 @@ class Pose:
         object.__setattr__(self, "covariance_m2", frozen(self.covariance_m2))
         if self.covariance_m2.shape != (2, 2):
             raise ShapeError(
-                f"A pose's covariance has shape {self.covariance_m2.shape}; needed is (2, 2)."
+                f"A pose's covariance has shape {self.covariance_m2.shape}; expected (2, 2)."
             )
 
 

@@ -125,8 +125,8 @@ class WaitingList:
             found = WaitingList(int(said["stamp_ns"]), callers, selected_id and int(selected_id))
         except (KeyError, TypeError, ValueError) as error:
             raise RecordingError(
-                f"This is no waiting list ({type(error).__name__}: {error}). Delete the file; "
-                "the list begins empty then."
+                f"This is not a waiting list ({type(error).__name__}: {error}). Delete the file; "
+                "the list then starts empty."
             ) from error
         return found
 

@@ -106,7 +106,7 @@ class Dashboard:
         """
         steering = self.steering
         if steering is None:
-            self._said.append("this page only shows; nothing can be changed here")
+            self._said.append("this page is read-only; nothing can be changed here")
             return
         if "do" in request:
             self._orders.append(lambda: self._obey(steering, str(request["do"])))

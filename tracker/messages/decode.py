@@ -84,7 +84,7 @@ def events_from_message(
     convert = _SINGLE.get(type_name)
     if convert is None:
         raise RecordingError(
-            f"Messages of type {type_name!r} say nothing here; understood are "
+            f"Messages of type {type_name!r} are not supported; supported are "
             f"{', '.join(sorted(DECODABLE))}."
         )
     return [convert(message)]
@@ -143,8 +143,8 @@ def camera_from_message(message: Any) -> CameraModel:
     is_sized = width > 0 and height > 0
     if is_sized and not (0 < wide <= width - left and 0 < high <= height - top):
         raise ConfigError(
-            f"A CameraInfo tells of a region of {wide}x{high} from column {left} and row {top} "
-            f"of a picture of {width}x{height}; it must lie within. Mend the driver's roi, or "
+            f"A CameraInfo names a region of {wide}x{high} from column {left} and row {top} "
+            f"of a picture of {width}x{height}; it must lie within. Correct the driver's roi, or "
             "set use_camera_info: false."
         )
     is_cut = is_sized and (wide, high) != (width, height)

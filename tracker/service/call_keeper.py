@@ -240,7 +240,7 @@ class CallKeeper:
 _LEADS_TO = {
     Verb.SERVE: (CallState.BEING_SERVED, "is being served"),
     Verb.SERVED: (CallState.SERVED, "is served"),
-    Verb.WAIT: (CallState.WAITING, "waits, behind the others"),
+    Verb.WAIT: (CallState.WAITING, "waits behind the others"),
     Verb.RELEASE: (CallState.GONE, "is released"),
     Verb.IGNORE: (CallState.IGNORED, "is ignored"),
 }

@@ -87,7 +87,7 @@ def _can_compile() -> bool:
 def machine() -> Machine | None:
     """The machine code of this process; None without numba."""
     if not _can_compile():
-        LOG.warning("numba cannot be used here, so that Python does the tracker's work, slowly.")
+        LOG.warning("numba cannot be used here; the tracker runs as Python, which is slow.")
         return None
     return Machine(compiled_frame)
 

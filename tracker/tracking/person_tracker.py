@@ -232,7 +232,7 @@ class PersonTracker:
         )
         if told.shape != shape or not np.isfinite(told).all():
             raise ShapeError(
-                f"`likeness` has shape {told.shape}, or is infinite; needed are finite numbers of "
+                f"`likeness` has shape {told.shape}, or is infinite; expected finite numbers of "
                 f"shape {shape}: the customers of the last step, and the measurements."
             )
         everybody[rows] = told

@@ -198,5 +198,5 @@ def _check_positions(measurements: Measurements) -> None:
     if others:
         raise MeasurementError(
             f"{others} of {len(measurements)} measurements are bearings or ranges; the reference "
-            "tracker takes positions alone. Give it `as_positions` of them, or use PersonTracker."
+            "tracker takes only positions. Give it `as_positions` of them, or use PersonTracker."
         )

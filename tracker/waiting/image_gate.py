@@ -21,7 +21,7 @@ class Verdict(Enum):
     NOT_DUE = "not its turn at processing_rate"
     REPEATED = "the same stamp as the image before; does the driver fill in header.stamp?"
     LATE = "earlier than the image before, out of order"
-    ODD = "far from the stamp before; a new time is believed if the next image agrees"
+    ODD = "far from the stamp before; the new time is accepted if the next image agrees"
 
     @property
     def is_admitted(self) -> bool:

@@ -114,7 +114,7 @@ def test_a_missing_key_is_named(room):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"a: [1\nb: 2\n", "is no YAML at line 2"),
+        (b"a: [1\nb: 2\n", "is not YAML at line 2"),
         (b"- 1\n", "holds no scene"),
         (b"\xff\xfe\x00", "is no "),
         (b"duration_s: 2024-99-99\n", "`duration_s` is '2024-99-99'"),

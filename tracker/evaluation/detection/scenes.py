@@ -149,7 +149,8 @@ def caller_scene(
         if is_in_view(scene, HAND_UP_S):
             return scene
     raise SceneError(
-        f"At {conditions.distance_m:g} m no raised hand fits into the picture; farther is needed."
+        f"At {conditions.distance_m:g} m no raised hand fits into the picture; choose a larger "
+        "distance."
     )
 
 

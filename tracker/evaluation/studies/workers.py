@@ -69,8 +69,8 @@ def run_in_order(
             yield result
     except BrokenExecutor as error:
         raise WorkerError(
-            f"Workers died {deaths} times and no unit of work was finished in between; mostly the "
-            "memory is too small for so many at once. Run fewer (--jobs)."
+            f"Workers died {deaths} times and no unit of work was finished in between; often "
+            "there is too little memory for so many at once. Use fewer processes (--jobs)."
         ) from error
     finally:
         for _, future in waiting:

@@ -143,8 +143,8 @@ class RecordingObjective:
         seen = stamps < self._split_ns
         if min(len(np.unique(self._piece(part))) for part in (stamps[seen], stamps[~seen])) < 2:
             raise ConfigError(
-                f"{self.name}: holds too few measurements to search with some and judge by the "
-                "others; a recording of a minute or more in which people raise hands is needed."
+                f"{self.name}: contains too few measurements for a search and a final test; use "
+                "a recording of a minute or more in which people raise hands."
             )
 
     def seen(self, config: Config) -> Iterator[float]:

@@ -95,7 +95,7 @@ def test_what_a_recording_cannot_judge_is_refused_by_name():
 
 def test_a_recording_without_enough_in_it_is_refused():
     told = Config()
-    with pytest.raises(ConfigError, match=r"a\.mcap: holds too few measurements"):
+    with pytest.raises(ConfigError, match=r"a\.mcap: contains too few measurements"):
         RecordingObjective("a.mcap", steps_of_a_minute(0.1, told)[:20], told)
 
 
