@@ -1,4 +1,4 @@
-"""Did it arrive? What a sender can know of that."""
+"""Did a message arrive? What its publisher can know."""
 
 from __future__ import annotations
 

@@ -126,13 +126,13 @@ class Diagnostics:
             self._scan_clock.add(stamp_ns, now_ns)
 
     def malformed(self, item: Input, text: str) -> None:
-        """What has come makes no sense."""
+        """A malformed message has come."""
         with self._lock:
             self._inputs[item].malformed += 1
             self._inputs[item].last_fault = text
 
     def processed(self, result: FrameResult, latency_s: float, busy_s: float) -> None:
-        """An image is through.
+        """An image was processed.
 
         Args:
             result: What came of it.

@@ -1,4 +1,4 @@
-"""`raised-hand echo`: what is said on one topic of the DDS wire, as text."""
+"""`raised-hand echo`: print the messages of one topic as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What does the wire know of one input, besides what has come?"""
+"""The connection of one input: publishers, and why nothing is received."""
 
 from __future__ import annotations
 

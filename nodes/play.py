@@ -1,4 +1,4 @@
-"""`raised-hand play`: a recording on the DDS wire, as if its robot were here."""
+"""`raised-hand play`: publish a recording as if its robot were here."""
 
 from __future__ import annotations
 

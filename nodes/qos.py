@@ -1,4 +1,4 @@
-"""With which quality of service is each topic heard and spoken, and why?
+"""The quality of service of each topic, and why.
 
 Plain data, for both shells. A reader that asks for less than a writer offers connects; one that
 asks for more hears nothing, without an error.

@@ -33,10 +33,10 @@ _WARN = partial(warnings.warn, stacklevel=3)
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """Where `raised-hand tune` looks for a parameter; choices are tried one and all.
+    """The range in which `raised-hand tune` searches; of choices, all are tried.
 
     Attributes:
-        kind: What it is about: process or measurement noise, clutter, life (of tracks), method.
+        kind: Process or measurement noise, clutter, life (of tracks), or method.
         low: From, of a number ...
         high: ... and to.
         log: Steps are factors.
@@ -705,7 +705,7 @@ class Config(BaseModel):
 
     @property
     def read_lean_max_deg(self) -> float:
-        """How far hands may lean that are read: a hand whose thumb is up lies on its side."""
+        """Largest lean of a processed hand; a hand with its thumb up lies on its side."""
         reads_all = self.raise_rule == "image" or self.gesture_release.startswith("thumb")
         return 180.0 if reads_all else self.search_lean_max_deg
 

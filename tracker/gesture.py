@@ -1,4 +1,4 @@
-"""What can a hand say?"""
+"""Which gestures are there?"""
 
 from __future__ import annotations
 

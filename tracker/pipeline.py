@@ -202,7 +202,7 @@ class Pipeline:
         return self.transforms.can_lookup(self.config.fixed_frame, frame, stamp_ns)
 
     def process(self, image: CameraImage) -> FrameResult:
-        """The way of one frame, now.
+        """Process one frame.
 
         Returns:
             What came of it. Missing transforms and scans are no errors: they are noted, hands are
@@ -420,7 +420,7 @@ class Pipeline:
         self._turn = turn
 
     def _let_go(self, tracks: Tracks) -> Tracks:
-        """Who says so with `gesture_release` is served no more; the next image chooses another."""
+        """End the service of a customer who shows `gesture_release`."""
         row = tracks.row_of(tracks.selected_id)
         gesture = Gesture.NONE if row is None else Gesture(int(tracks.gesture[row]))
         if gesture is Gesture.NONE or gesture.word != self.config.gesture_release:

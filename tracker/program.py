@@ -1,4 +1,4 @@
-"""How does a program of ours end? In one line and a status, whatever stops it.
+"""How do our programs end? With one line and an exit status.
 
 Exit status: 0 done, 1 something failed or the input was broken, 2 the words on the command line
 were wrong, 130 stopped by Ctrl-C.
@@ -95,7 +95,7 @@ def _check_words() -> None:
 
 
 def _check_memory() -> None:
-    """Refuse to begin where libraries crash as they are loaded, without a word.
+    """Refuse to start with so little memory that libraries crash while loading.
 
     Raises:
         ConfigError: The address space is limited to less.
@@ -118,7 +118,7 @@ def _interrupted() -> tuple[int, str]:
 
 
 def _print_last(text: str) -> None:
-    """Say the last word, and leave nothing behind that fails as the interpreter ends."""
+    """Print the last line, and avoid errors while the interpreter ends."""
     for stream, words in ((sys.stdout, ""), (sys.stderr, f"{text}\n")):
         if stream is None:
             continue

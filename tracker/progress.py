@@ -1,4 +1,4 @@
-"""How far is it? Progress bars on standard error, quiet where nobody watches."""
+"""Progress bars on standard error; few lines if it is not a terminal."""
 
 from __future__ import annotations
 

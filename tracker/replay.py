@@ -1,4 +1,4 @@
-"""What would the robot have done? A recording through the very pipeline that runs on the robot.
+"""Run the robot's pipeline on a recording.
 
 Reads any recording, writes `output.mcap`, `tracks.csv`, `summary.json`, `overview.png` and
 `debug.mp4`. Streams: memory does not grow with the recording.
@@ -40,7 +40,7 @@ Watcher = Callable[[CameraImage, FrameResult, float], None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Replay:
-    """What came of a recording.
+    """The result of a replay.
 
     Attributes:
         history: Everybody's tracks, raised hands and the room, for tables and pictures.
@@ -72,7 +72,7 @@ def replay(
     watch: Watch | None = None,
     watchers: Sequence[Watcher] = (),
 ) -> Replay:
-    """Run a recording through the pipeline and write everything that comes of it.
+    """Run the pipeline on a recording and write all results.
 
     A recording that breaks off, or holds broken messages, is replayed as far as it goes; what was
     wrong stands in `Replay.problems`, and everything written until then can be read.

@@ -1,4 +1,4 @@
-"""Does what is sent to the node arrive? What is lost on the way is told, mended if it can be."""
+"""Do the messages for this node arrive? Losses are reported, and repaired if possible."""
 
 from __future__ import annotations
 

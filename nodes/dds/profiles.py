@@ -1,4 +1,4 @@
-"""How hard does the wire try? Quality of service as Cyclone DDS takes it."""
+"""Quality of service in the form of Cyclone DDS."""
 
 from __future__ import annotations
 

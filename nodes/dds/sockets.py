@@ -1,4 +1,4 @@
-"""Do the UDP sockets hold what comes? Linux tells of each how much it dropped."""
+"""Do UDP sockets drop datagrams? Linux counts them for each socket."""
 
 from __future__ import annotations
 

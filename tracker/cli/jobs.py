@@ -1,4 +1,4 @@
-"""Who does the work of a long command? Several processes, a cluster, or this one."""
+"""Where does a long command run? In several processes, on a cluster, or in this process."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ExecutorOption = Annotated[
 
 @contextmanager
 def open_executor(executor: str, jobs: int, units: int) -> Iterator[Executor | None]:
-    """Whoever is asked for.
+    """The executor that the option names.
 
     Args:
         executor: `processes`, or the address of a Dask scheduler.

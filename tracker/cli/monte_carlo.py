@@ -1,4 +1,4 @@
-"""`raised-hand monte-carlo`: many noisy trials of the tracker, against bounds and truth."""
+"""`raised-hand monte-carlo`: many simulated trials of the tracker, compared with the truth."""
 
 from __future__ import annotations
 

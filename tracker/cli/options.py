@@ -1,4 +1,4 @@
-"""What the commands share: common options, where words go, how results are printed."""
+"""What the commands share: common options, how messages and results are printed."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def parameter_files(config: Path | None, parameters: Config) -> list[Path | None
 
 
 def command_line() -> str:
-    """What the user typed, fit to be typed again."""
+    """The command line as the user typed it, quoted for the shell."""
     return shlex.join(["raised-hand", *sys.argv[1:]])
 
 
@@ -106,5 +106,5 @@ def complain(text: object) -> None:
 
 
 def note(text: str) -> None:
-    """One line on standard error about what is no failure."""
+    """One line on standard error that is not a failure."""
     errors.print(f"note: {one_line(text)}", highlight=False, markup=False, soft_wrap=True)

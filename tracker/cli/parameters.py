@@ -1,4 +1,4 @@
-"""`raised-hand parameters`: which numbers decide, what each means, and what it may be."""
+"""`raised-hand parameters`: all parameters, their meaning and allowed values."""
 
 from __future__ import annotations
 

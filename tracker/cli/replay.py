@@ -1,4 +1,4 @@
-"""`raised-hand replay`: a recording through the tracker, as the robot would have seen it."""
+"""`raised-hand replay`: run the tracker on a recording, as on the robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`raised-hand tune`: the parameters that serve your robot best, and whether they truly do."""
+"""`raised-hand tune`: search for the best parameters, and test them on other data."""
 
 from __future__ import annotations
 

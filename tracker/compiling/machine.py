@@ -1,4 +1,4 @@
-"""Machine code that is compiled by numba once on a machine, in the background, and kept.
+"""Compiled code: numba compiles it once on a machine, in the background.
 
 Until it is there, functions run as the Python that they are: nothing waits for the compiler but
 `Machine.finish`. The compiler is a process of its own, so that it takes no time from what

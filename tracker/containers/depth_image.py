@@ -45,7 +45,7 @@ class DepthImage:
 
     @staticmethod
     def of(stamp_ns: int, frame_id: str, pixels: NDArray[Any]) -> DepthImage:
-        """A picture whose pixels are at hand, as `read` gives them."""
+        """A depth image whose pixels are already decoded, in the form of `read`."""
         return DepthImage(stamp_ns, frame_id, lambda: pixels)
 
 

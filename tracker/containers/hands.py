@@ -154,7 +154,7 @@ class Hands:
 
     @property
     def is_owned(self) -> BoolArray:
-        """Shape (H,): the torso of whose hand it is is known."""
+        """Shape (H,): the owner's torso is known."""
         return np.asarray(np.isfinite(self.torso_px).all(axis=-1))
 
     @property

@@ -77,7 +77,7 @@ def usable_rows(claims: Measurements) -> BoolArray:
 
 
 def are_ordinary(known: FloatArray, std: FloatArray, sensor_pose: FloatArray) -> bool:
-    """Whether bearings and ranges are so plain that they need no closer look.
+    """Whether bearings and ranges are so ordinary that they need no detailed check.
 
     This asks for more than is needed, in a microsecond. A sum of squares bounds each of its
     numbers, `argmin` finds NaN before any number, and NaN fails every comparison.
@@ -105,7 +105,7 @@ def _sum_of_squares(numbers: FloatArray) -> float:
 
 
 def _are_plain(claims: Measurements) -> bool:
-    """Nothing is wrong and nothing unusual; said of all rows at once, it costs microseconds.
+    """A quick check of all rows at once: nothing is wrong and nothing unusual.
 
     A sum of squares bounds each of its numbers, and NaN fails every comparison.
     """
@@ -150,7 +150,7 @@ class _Fault(NamedTuple):
 
 
 def _faults(claims: Measurements) -> Iterator[_Fault]:
-    """All that may be wrong, the plainest first."""
+    """Everything that may be wrong, the simplest first."""
     known = (claims.kind >= 0) & (claims.kind < len(SensorKind))
     names = ", ".join(f"{kind.value} ({kind.name})" for kind in SensorKind)
     yield _Fault(
@@ -230,7 +230,7 @@ def _faults_of_noise(covariance: FloatArray, kind: FloatArray) -> Iterator[_Faul
 
 
 def _are_definite(noise: FloatArray, alone: BoolArray | bool) -> BoolArray:
-    """Shape (M,): symmetric, and with a correlation below 1; none where a number is alone.
+    """Shape (M,): symmetric, with a correlation below 1, and 0 for single numbers.
 
     The variances are left to others.
     """

@@ -1,4 +1,4 @@
-"""What do the sensors claim about people?"""
+"""What did the sensors measure of people?"""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class _Details(TypedDict, total=False):
 
 @dataclass(frozen=True, eq=False)
 class Measurements:
-    """What the sensors claim about people at one instant; row i of each array is one claim.
+    """What sensors measured of people at one instant; row i of each array is one measurement.
 
     A tracker can use every row: numbers are finite and below 1e9, covariances are positive
     definite. What cannot be used is refused where it is made.

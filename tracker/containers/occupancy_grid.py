@@ -1,4 +1,4 @@
-"""Where is the floor taken, by a map that was made before? nav_msgs/OccupancyGrid in our terms."""
+"""Which cells of the floor are occupied? The map of nav_msgs/OccupancyGrid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What did a frame lead to, and what was true?"""
+"""The result of a frame, and the simulated truth."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Truth:
 
 @dataclass(frozen=True, slots=True)
 class PerceptionWork:
-    """What perception did for one image, and how long each stage took on the wall.
+    """What perception did for one image, and how long each stage took (wall-clock time).
 
     Attributes:
         places: Parts of the picture that were searched for palms.
@@ -110,7 +110,7 @@ class PerceptionWork:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameResult:
-    """Everything one processed image led to.
+    """The result of one processed image.
 
     Attributes:
         stamp_ns: The image's own stamp.

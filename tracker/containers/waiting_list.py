@@ -103,7 +103,7 @@ class WaitingList:
         return tuple(caller for caller in self.callers if caller.state is CallState.WAITING)
 
     def to_json(self) -> str:
-        """A text that `from_json` reads, to be kept while the program is not running."""
+        """A text for `from_json`, to store the list while the program is not running."""
         callers = [
             {name: getattr(caller, name) for name in Caller.__slots__} for caller in self.callers
         ]
@@ -113,7 +113,7 @@ class WaitingList:
 
     @staticmethod
     def from_json(text: str) -> WaitingList:
-        """Read what `to_json` wrote. Nobody is in sight then: tracks of another run are no more.
+        """Read the text of `to_json`. Nobody is in sight: the tracks of that run no longer exist.
 
         Raises:
             RecordingError: The text is no such list.

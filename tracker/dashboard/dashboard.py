@@ -1,4 +1,4 @@
-"""What the page knows: the newest frame, drawn only when a browser is ready for it.
+"""The state of the page: the newest frame, drawn only when a browser asks for it.
 
 The thread that processes frames leaves a reference here and goes on; it never draws, and never
 waits for a browser.
@@ -31,7 +31,7 @@ _JPEG_QUALITY = 80
 
 
 class Steering(Protocol):
-    """Who follows the page's buttons and sliders."""
+    """What executes the page's buttons and sliders."""
 
     def obey(self, command: Command) -> Answer:
         """Follow a command about the waiting list."""

@@ -1,4 +1,4 @@
-"""The newest picture of a camera: a thread reads, and what nobody took in time is dropped."""
+"""The newest picture of a camera: a thread reads, and pictures not taken in time are dropped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What does a ROS message say? From sensor messages to the tracker's containers."""
+"""From ROS sensor messages to the tracker's containers."""
 
 from __future__ import annotations
 
@@ -241,7 +241,7 @@ def _camera_image(message: Any, picture: Picture) -> CameraImage:
 
 
 def _check_beams(scan: Scan, angle_max_rad: float) -> None:
-    """Angles and ranges must tell of the same turn; drivers differ by a beam at the seam."""
+    """Check that angles and ranges fit together; drivers differ by one beam."""
     came = len(scan.ranges_m)
     if not came:
         return

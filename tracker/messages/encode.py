@@ -1,4 +1,4 @@
-"""How is it said in ROS? From the tracker's containers to serialized messages."""
+"""From the tracker's containers to serialized ROS messages."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ else:
 
 
 class FolderLock(Closing):
-    """Keeps a folder for its process; however that ends, the system lets the folder go.
+    """Locks a folder for this process; the system unlocks it when the process ends.
 
     The file `.lock` stays: were it taken away, two could hold one each.
 

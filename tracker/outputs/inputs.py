@@ -1,4 +1,4 @@
-"""Would an output take the place of an input? Asked before anything is opened."""
+"""Would an output replace an input? Checked before any file is opened."""
 
 from __future__ import annotations
 

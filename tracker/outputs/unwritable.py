@@ -1,4 +1,4 @@
-"""What does one tell whose file cannot be written? The cause, and what helps against that one."""
+"""The error for a file that cannot be written: the cause, and what helps."""
 
 from __future__ import annotations
 

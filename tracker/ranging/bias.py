@@ -1,4 +1,4 @@
-"""What lasts of a place's error? Legs beside the torso, a hand beside the body, yaw and stamps.
+"""Which errors of a position last? Legs beside the torso, hand beside the body, yaw, stamps.
 
 Sensors that move with velocity v and turn rate w, and whose stamps are late by t, show a place at
 d from them as if it were shifted by t u, with

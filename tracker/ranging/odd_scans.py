@@ -1,4 +1,4 @@
-"""Does a scan speak of meters and radians, and of no more beams than a scanner has?
+"""Is a scan in meters and radians, with a plausible number of beams?
 
 Some drivers send millimeters or degrees. No planar scanner's returns are all farther than any
 room, and none turns twice in one scan: such numbers are in another unit, and are converted.
@@ -28,7 +28,7 @@ BEAMS_MAX = 32_768
 
 
 def mend_scan(scan: Scan) -> tuple[Scan, tuple[Note, ...]]:
-    """The scan in meters and radians, with a bounded number of beams; and what had to be done.
+    """The scan in meters and radians with a limited number of beams, and notes on the changes.
 
     What cannot be told for sure, as of a scan with few returns, is left as it came.
     """

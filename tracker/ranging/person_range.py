@@ -1,4 +1,4 @@
-"""What does a hand in the picture say of its owner? Where beside the ray, and how far along it.
+"""Where is the owner of a hand? To the side of its ray, and how far along it.
 
 A raised hand stands beside the body, and a laser at leg height looks past the body at the wall:
 the beam at the hand's own bearing is the wrong one to ask. But the thumb of a raised hand points
@@ -68,7 +68,7 @@ def range_of_palm_m(palm_px: FloatArray, camera: CameraModel) -> FloatArray:
 
 
 def palms_px(hands: Hands) -> tuple[FloatArray, FloatArray]:
-    """Lengths of the palms, each of shape (H,): as seen, and as told by their breadth."""
+    """Lengths of the palms, each of shape (H,): as seen, and as computed from their width."""
     points = hands.landmarks_px
     length = np.linalg.norm(points[:, _MIDDLE_ROOT] - points[:, _WRIST], axis=-1)
     breadth = np.linalg.norm(points[:, _INDEX_ROOT] - points[:, _PINKY_ROOT], axis=-1)

@@ -37,7 +37,7 @@ _LARGEST_METADATA = 20_000_000
 
 
 def is_bag_file(path: Path) -> bool:
-    """By its name, packed or not: .mcap, .db3, .bag, .bag.active, .mcap.zstd ..."""
+    """Whether a name is that of a recording: .mcap, .db3, .bag, .bag.active, .mcap.zstd ..."""
     return _suffix(path) in _SOURCES
 
 

@@ -1,4 +1,4 @@
-"""What may a robot's program, or a person, say about the waiting list?"""
+"""Which commands change the waiting list?"""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tracker.wording import shown
 
 
 class Verb(str, Enum):
-    """What should happen; the values are the words of the commands."""
+    """The kinds of commands; the values are their words."""
 
     SERVE = "serve"
     SERVED = "served"

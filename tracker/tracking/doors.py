@@ -1,4 +1,4 @@
-"""How does a function of the user's own take the place of a step?"""
+"""How does a function of the user replace a step of the tracker?"""
 
 from __future__ import annotations
 

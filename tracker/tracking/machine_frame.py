@@ -1,4 +1,4 @@
-"""The frame as machine code: of which types it is, and where this process has it."""
+"""The compiled frame: its types, and where this process keeps it."""
 
 from __future__ import annotations
 

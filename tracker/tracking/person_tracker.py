@@ -110,7 +110,7 @@ class PersonTracker:
         self.calls.reset()
 
     def restore(self, kept: WaitingList) -> None:
-        """Go on with a waiting list of before; its numbers are given to nobody else."""
+        """Continue with an earlier waiting list; its numbers are not given to other people."""
         self._next_id = max([self._next_id, *(caller.id + 1 for caller in kept.callers)])
         self.calls.restore(kept)
 
@@ -123,7 +123,7 @@ class PersonTracker:
         self.calls.lower_hands()
 
     def doubt(self, moved: FloatArray, over_s: float) -> None:
-        """Widen what is believed of everybody by a motion that they may be off by.
+        """Widen everybody's covariance by a motion of the robot that was not measured.
 
         Args:
             moved: Shape (3,): x_m, y_m, yaw_rad of a rigid motion about the origin, such as the

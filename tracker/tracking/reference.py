@@ -1,4 +1,4 @@
-"""The tracker as a textbook has it: read this first, then the product's own files.
+"""The tracker as in a textbook: read this first, then the product's own files.
 
 One Kalman filter for each customer (FilterPy), one assignment for each frame (scipy), streaks that
 say whose hand is up. With z a measured position, R its covariance, and x = (x, y, vx, vy):

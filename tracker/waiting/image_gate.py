@@ -14,7 +14,7 @@ _LATE_NS = 500_000_000
 
 
 class Verdict(Enum):
-    """What is to be done with an image; the value says why."""
+    """Whether an image is processed; the value says why."""
 
     ADMITTED = "its turn"
     JUMPED_BACK = "its turn, and the first of a new time"

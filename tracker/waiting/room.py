@@ -1,4 +1,4 @@
-"""Who waits for whom? Images for their transforms; scans and transforms for their images.
+"""Keeps images until their transforms come, and scans and transforms until images come.
 
 Replay, both nodes and the evaluation use this one room. Time is the data's own.
 """

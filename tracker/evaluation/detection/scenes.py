@@ -1,4 +1,4 @@
-"""Whom and what does a detector meet? Scenes drawn at random, balanced over what may matter.
+"""The scenes of a detection study: drawn at random, balanced over everything that may matter.
 
 Callers raise a hand at a known time; idlers talk, drink, phone, scratch their heads, rest their
 hands or wave them low, and never call.

@@ -59,7 +59,7 @@ class ClusterScore:
 def score_clusters(
     path: str | Path, config: Config | None = None, within_m: float = 0.3
 ) -> ClusterScore:
-    """Hold the clusters of a recording's scans against the people marked in them.
+    """Compare the clusters of a recording's scans with the people marked in them.
 
     Args:
         path: A bag with scans and marks.

@@ -166,7 +166,7 @@ def find_scenario(scenario: str | Scenario) -> tuple[str, Scenario]:
 
 
 def _settings(scenario: Scenario, config: Config, seed: int) -> dict[str, Any]:
-    """All that decides what the rows are, in plain values."""
+    """Everything on which the rows depend, in plain values."""
     settings = {
         "version": version("raised-hand-tracker"),
         "seed": seed,

@@ -1,4 +1,4 @@
-"""What did the trials say, taken together? Figures with their intervals, and what was expected."""
+"""The figures of a study over all trials, with their intervals and what was expected."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Figure:
 
     @property
     def as_expected(self) -> bool | None:
-        """Whether the value keeps to what is expected; None where nothing is."""
+        """Whether the value lies in the expected interval; None if there is none."""
         if self.expected is None:
             return None
         return self.expected[0] <= self.value <= self.expected[1]
@@ -99,7 +99,7 @@ class FilterStudy:
 
     @property
     def lost(self) -> int:
-        """Trials whose track is nowhere near at the end."""
+        """Trials whose track is far from the person at the end."""
         limit_m = LOST_BOUNDS * np.sqrt(self.bound_m2[-1])
         return int(np.count_nonzero(~(self.rows["final_error_m"] <= limit_m)))
 
@@ -223,7 +223,7 @@ def settled_frame(scenario: FilterScenario) -> int:
 
 
 def study_as_dict(study: Study) -> dict[str, Any]:
-    """What a study says in plain numbers, fit for JSON; None for what was not measured."""
+    """A study in plain numbers, for JSON; None for what was not measured."""
     return {
         "scenario": study.name,
         "title": study.scenario.title,

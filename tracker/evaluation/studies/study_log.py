@@ -1,4 +1,4 @@
-"""What of a study is on disk already, so that a stopped one goes on where it was?
+"""Which units of a study are already on disk? So that a stopped study can continue.
 
 A folder holds `settings.yaml` (which study this is), `trials.csv` (a line per trial, in order,
 every number to its last bit) and, of a filter scenario, `sums.f64` (a record for each unit). They

@@ -18,7 +18,7 @@ def _parameters(**values: Any) -> Parameters:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FilterScenario:
-    """One person who moves exactly as the filter believes, seen by one sensor.
+    """One person who moves exactly as the filter assumes, seen by one sensor.
 
     Nothing but the filter is at work: the person is known from the start, every measurement is
     theirs. So the posterior Cramer-Rao bound is known, and NEES has a distribution. Trials are
@@ -121,7 +121,7 @@ class PeopleScenario:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownPeopleScenario:
-    """People who are known from the start and move as the tracker believes, seen by one sensor.
+    """People known from the start who move as the tracker assumes, seen by one sensor.
 
     Prediction, gate, assignment and correction are at work; nobody comes or goes. Whatever
     `motion`, `association` and `outlier_dof` say, people walk, the assignment is the most likely

@@ -1,4 +1,4 @@
-"""What is a better tracker? By truth, where it is simulated; by what it foretells, where not.
+"""What is a better tracker? GOSPA in simulations, prediction of measurements in recordings.
 
 An objective has parts that the search sees and parts that it never sees, so that what was found
 can be held against what was there before. The parts are the same for every configuration:
@@ -115,7 +115,7 @@ class ScenarioObjective:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordingObjective:
-    """How well a recording's measurements were foretold, in pieces of so many seconds.
+    """How well a recording's measurements were predicted, in pieces of some seconds.
 
     The search sees the first part of the recording, the verdict is about the rest; in both the
     tracker runs from the beginning.
@@ -163,7 +163,7 @@ class RecordingObjective:
         return tunable()[name].kind != "life"
 
     def check(self, names: Sequence[str]) -> None:
-        """Refuse what the measurements tell nothing of."""
+        """Refuse parameters on which the score of measurements does not depend."""
         blind = [name for name in names if not self.judges(name)]
         if blind:
             raise ConfigError(

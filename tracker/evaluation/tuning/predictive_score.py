@@ -1,4 +1,4 @@
-"""How well was each measurement foretold? A score of trackers where no truth is known.
+"""How well was each measurement predicted? A score for recordings without truth.
 
 Before a measurement counts, the tracker expects people where it believes them, and newcomers and
 false measurements anywhere. So it foretells where the next measurement is, one step ahead:

@@ -1,4 +1,4 @@
-"""Which parameters serve a scenario or a recording best? A search that can be stopped and goes on.
+"""Which parameters are best for a scenario or a recording? A search that can be continued.
 
 Optuna's tree-structured Parzen estimator proposes, every trial sees the same scenes, and what has
 been tried lies in Optuna's storage: several processes share it, and a later call goes on in it.
@@ -52,7 +52,7 @@ def tune(
     progress: Progress = lambda done, best: None,
     judged: Judged = lambda scenes: None,
 ) -> Tuning:
-    """Search until the study holds so many trials, then judge the best on what no trial has seen.
+    """Search for this many trials, then test the best on data that no trial has used.
 
     The first trial is `base` itself. Run again with the same storage, it goes on where it was; so
     it does after an interruption.
@@ -259,7 +259,7 @@ def _share_out(
 
 
 def _search_on(*item: Any) -> None:
-    """In another process: Ctrl-C is the first one's to answer; this one ends with its trial."""
+    """In another process: the main process handles Ctrl-C; this one ends after its trial."""
     signal(SIGINT, SIG_IGN)
     _search(*item)
 
@@ -334,7 +334,7 @@ def _ended() -> tuple[Any, ...]:
 
 
 def check_optuna() -> None:
-    """See to it, before any long work, that a search can begin.
+    """Check, before any long work, that a search can begin.
 
     Raises:
         ConfigError: Optuna is not installed.

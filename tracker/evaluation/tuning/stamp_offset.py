@@ -1,4 +1,4 @@
-"""How late are a sensor's stamps? Told by people who stand still while the robot turns.
+"""How late are a sensor's stamps? From people who stand still while the robot turns.
 
 A sensor whose stamps are late by t shows what was before. With the robot's turn rate w, the
 heading of somebody at p, seen from s, comes out in the fixed frame as

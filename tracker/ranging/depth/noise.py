@@ -1,4 +1,4 @@
-"""How far may a range be off that a depth camera tells?"""
+"""How large is the range error of a depth camera?"""
 
 from __future__ import annotations
 
