@@ -56,7 +56,7 @@ def draw_detection(study: DetectionStudy, path: str | Path) -> None:
     figure.suptitle(
         f"{total.found} of {total.total} raised hands found within {FRAMES_TO_FIND} images; "
         f"{false_rate(study.minutes).count} false raises in {len(study.minutes)} minutes\n"
-        f"seed {study.seed}; bars: 95 % intervals; gray lines: all hands below, one an hour above",
+        f"seed {study.seed}; bars: 95 % intervals; gray lines: all hands; one false raise an hour",
         color=INK,
     )
     figure.savefig(path, format="png")
@@ -74,7 +74,7 @@ def _draw_distance(axes: Axes, study: DetectionStudy, rows: Sequence[Recall]) ->
             f"{row.found}/{row.total}", (distance_m, row.high), (0, 7), fontsize=8, color=INK,
             textcoords="offset points", ha="center", annotation_clip=False,
         )  # fmt: skip
-    axes.set(xlabel="distance (m)", ylabel="recall", ylim=(0.0, 1.08), title="found")
+    axes.set(xlabel="distance (m)", ylabel="recall (good: 1)", ylim=(0.0, 1.08), title="found")
     axes.set_xticks(at_m)
     axes.set_yticks(np.linspace(0.0, 1.0, 6))
     _plain(axes)
@@ -90,7 +90,7 @@ def _draw_levels(axes: Axes, name: str, rows: Sequence[Recall], total: Recall) -
     axes.set(
         xlim=(-0.02, 1.02),
         ylim=(len(rows) - 0.5, -0.5),
-        title=f"recall by {_TITLES.get(name, name)}",
+        title=f"recall (1 is perfect) by {_TITLES.get(name, name)}",
     )
     axes.set_xticks((0.0, 0.5, 1.0))
     _plain(axes)
@@ -111,7 +111,7 @@ def _draw_false(axes: Axes, study: DetectionStudy) -> None:
     axes.axvline(1.0, color=FADED, linewidth=0.8)
     axes.xaxis.set_major_formatter(lambda rate, _: f"{rate:g}")
     axes.set_yticks(at, [_false_label(row) for row in rows])
-    axes.set(xlabel="false raises an hour", title="invented while nobody calls")
+    axes.set(xlabel="false raises an hour", title="false raises while nobody calls (0 is perfect)")
     axes.set(xlim=(-0.1, None), ylim=(len(rows) - 0.5, -0.5))
     _plain(axes)
 

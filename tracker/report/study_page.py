@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
+from tracker.evaluation.studies.row_names import ROW_NAMES
 from tracker.evaluation.studies.study import FilterStudy, PeopleStudy, Study
 from tracker.report.page import Facts, Page, Part, Picture, Section, Table, Text
 from tracker.report.palette import PAPER
@@ -62,8 +63,8 @@ def _verdict(study: Study) -> tuple[Part, ...]:
         return ()
     off = [figure.name.strip() for figure in judged if not figure.as_expected]
     if off:
-        return (Text((f"Outside of what a perfect filter would show: {', '.join(off)}.",)),)
-    return (Text(("What has an expectation keeps to it.",)),)
+        return (Text((f"Outside the interval of a perfect filter: {', '.join(off)}.",)),)
+    return (Text(("Every figure with an expectation lies in its interval.",)),)
 
 
 def _plots(study: Study) -> tuple[Part, ...]:
@@ -71,11 +72,13 @@ def _plots(study: Study) -> tuple[Part, ...]:
         figure = Figure(figsize=(6.6, 6.4), facecolor=PAPER, layout="constrained")
         error, nees = figure.subplots(2, 1)
         draw_filter(error, nees, study)
-        return (Picture.plot(figure, "Error and NEES over time, means over the trials."),)
+        words = "Means over the trials. Good: an error near the bound, a NEES inside the band."
+        return (Picture.plot(figure, words),)
     if isinstance(study, PeopleStudy):
         figure = Figure(figsize=(6.6, 3.6), facecolor=PAPER, layout="constrained")
         draw_gospa_parts(figure.add_subplot(), study)
-        return (Picture.plot(figure, "Where the error comes from, trial by trial."),)
+        words = "GOSPA of each trial by its parts; less is better."
+        return (Picture.plot(figure, words),)
     return ()
 
 
@@ -92,10 +95,10 @@ def _histograms(study: Study) -> tuple[Part, ...]:
     figure = Figure(figsize=(6.6, 1.9 * lines), facecolor=PAPER, layout="constrained")
     grid = figure.subplots(lines, 3, squeeze=False).flat
     for axes, (name, values) in zip(grid, varied.items(), strict=False):
-        draw_distribution(axes, values, name)
+        draw_distribution(axes, values, ROW_NAMES.get(name, name))
     for axes in list(grid.base.flat)[len(varied) :]:
         axes.set_axis_off()
-    return (Picture.plot(figure, "How often each value came; the line is the mean."),)
+    return (Picture.plot(figure, "In how many trials each value occurred; the line is the mean."),)
 
 
 def _quantiles(study: Study) -> Table:
@@ -105,9 +108,9 @@ def _quantiles(study: Study) -> Table:
         cells = ["-"] * len(_QUANTILES)
         if len(finite):
             cells = [f"{value:.3g}" for value in np.quantile(finite, _QUANTILES)]
-        rows.append((name, *cells, str(len(values) - len(finite))))
+        rows.append((ROW_NAMES.get(name, name), *cells, str(len(values) - len(finite))))
     names = ("least", "5 %", "25 %", "median", "75 %", "95 %", "most")
-    columns = ("of a trial", *names, "without")
+    columns = ("figure of a trial", *names, "trials without")
     return Table(columns, tuple(rows), numeric=frozenset(range(1, len(columns))))
 
 
@@ -120,7 +123,7 @@ def _worst(study: Study) -> tuple[Part, ...]:
         (str(trial), *(f"{study.rows[key][trial]:.3g}" for key in (name, *shown)))
         for trial in worst
     )
-    columns = ("trial", name, *shown)
+    columns = ("trial", *(ROW_NAMES.get(key, key) for key in (name, *shown)))
     table = Table(columns, rows, numeric=frozenset(range(len(columns))))
     again = (
         "Trial i of a seed is the same in every study. From Python, with the study's scenario and "

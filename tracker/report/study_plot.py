@@ -10,24 +10,20 @@ from matplotlib.figure import Figure
 
 from tracker.containers import FloatArray
 from tracker.evaluation.metrics.consistency import mean_bounds
+from tracker.evaluation.studies.row_names import ROW_NAMES
 from tracker.evaluation.studies.study import FilterStudy, KnownPeopleStudy, PeopleStudy, Study
 from tracker.report.palette import FADED, INK, LIT, PAPER, PERSON_COLORS
 from tracker.wording import counted
 
 _GOSPA_PARTS = ("localisation", "missed", "false")
-_KNOWN_PEOPLE = (
-    ("mse_m2", "mean squared error (m$^2$)"),
-    ("final_nees", "NEES of found people (ideal 4)"),
-    ("wrong_share", "wrong measurements, share"),
-    ("swapped_share", "people swapped, share"),
-)
+_KNOWN_PEOPLE = ("mse_m2", "final_nees", "wrong_share", "swapped_share")
 _DISTRIBUTIONS = (
-    ("gospa_m", "GOSPA (m)"),
-    ("identity_switches_per_min", "identity switches a minute"),
-    ("time_to_raise_s", "time to raise (s)"),
-    ("rmse_m", "RMSE of found people (m)"),
-    ("nees_position", "NEES of the position (ideal 2)"),
-    ("covered_share", "inside the 95 % ellipse, share"),
+    "gospa_m",
+    "identity_switches_per_min",
+    "time_to_raise_s",
+    "rmse_m",
+    "nees_position",
+    "covered_share",
 )
 
 
@@ -46,8 +42,8 @@ def draw_study(study: Study, path: str | Path) -> None:
         error, nees = figure.subplots(1, 2)
         draw_filter(error, nees, study)
     elif isinstance(study, KnownPeopleStudy):
-        for axes, (name, title) in zip(figure.subplots(1, 4), _KNOWN_PEOPLE, strict=True):
-            draw_distribution(axes, study.rows[name], title)
+        for axes, name in zip(figure.subplots(1, 4), _KNOWN_PEOPLE, strict=True):
+            draw_distribution(axes, study.rows[name], ROW_NAMES[name])
     else:
         _draw_people(figure, study)
     figure.suptitle(
@@ -61,7 +57,7 @@ def draw_filter(error: Axes, nees: Axes, study: FilterStudy) -> None:
     at_s = (1 + np.arange(len(study.nees))) / study.scenario.rate_hz
     error.plot(at_s, np.sqrt(study.squared_error_m2), color=PERSON_COLORS[0], label="RMSE")
     error.plot(at_s, np.sqrt(study.bound_m2), "--", color=INK, label="Cramer-Rao bound")
-    error.set(xlabel="time (s)", ylabel="error of the position (m)", ylim=(0.0, None))
+    error.set(xlabel="time (s)", ylabel="position error (m); less is better", ylim=(0.0, None))
     error.legend(frameon=False)
     low, high = mean_bounds(4, study.trials)
     nees.axhspan(low, high, color=LIT, alpha=0.3, label="95 % of perfect filters")
@@ -76,9 +72,9 @@ def draw_filter(error: Axes, nees: Axes, study: FilterStudy) -> None:
 def _draw_people(figure: Figure, study: PeopleStudy) -> None:
     grid = figure.add_gridspec(2, 5)
     draw_gospa_parts(figure.add_subplot(grid[:, :2]), study)
-    for place, (name, title) in enumerate(_DISTRIBUTIONS):
+    for place, name in enumerate(_DISTRIBUTIONS):
         axes = figure.add_subplot(grid[place // 3, 2 + place % 3])
-        draw_distribution(axes, study.rows[name], title)
+        draw_distribution(axes, study.rows[name], ROW_NAMES[name])
 
 
 def draw_gospa_parts(axes: Axes, study: PeopleStudy) -> None:
@@ -89,7 +85,7 @@ def draw_gospa_parts(axes: Axes, study: PeopleStudy) -> None:
         values = study.rows[f"gospa_{part}"][order]
         axes.bar(np.arange(study.trials), values, 1.0, below, color=color, label=part)
         below += values
-    axes.set(xlabel="trials, best first", ylabel="GOSPA squared, by parts (m$^2$)")
+    axes.set(xlabel="trials, the best first", ylabel="GOSPA squared (m²); less is better")
     axes.legend(frameon=False)
     _plain(axes)
 

@@ -167,10 +167,10 @@ class RecordingObjective:
         blind = [name for name in names if not self.judges(name)]
         if blind:
             raise ConfigError(
-                f"This recording says nothing about {', '.join(blind)}: what it foretells does "
-                "not depend on the life of tracks; stated noise can be changed afterwards under "
-                "`ranging: person` only, and that of hands without poses only. Choose "
-                "others, or tune on a scenario."
+                f"A recording cannot tune {', '.join(blind)}: its score does not depend on when "
+                "tracks begin and end (life). It can tune the stated noise only with `ranging: "
+                "person`, and that of hands only with `pose_opinion: none`. Choose other "
+                "parameters, or tune on a scenario."
             )
 
     def describe(self) -> str:

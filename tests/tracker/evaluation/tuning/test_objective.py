@@ -82,14 +82,14 @@ def test_what_a_recording_cannot_judge_is_refused_by_name():
     told = Config(pose_opinion="none")
     recording = RecordingObjective("a.mcap", steps_of_a_minute(0.1, told), told)
     recording.check([name for name, search in tunable().items() if search.kind != "life"])
-    with pytest.raises(ConfigError, match="nothing about delete_after_s"):
+    with pytest.raises(ConfigError, match="cannot tune delete_after_s"):
         recording.check(["delete_after_s"])
     spec = RecordingObjective("a.mcap", recording.steps, Config(ranging="spec"))
-    with pytest.raises(ConfigError, match="nothing about range_std_m"):
+    with pytest.raises(ConfigError, match="cannot tune range_std_m"):
         spec.check(["range_std_m"])
     posed = RecordingObjective("a.mcap", recording.steps, Config())
     posed.check(["range_std_m"])
-    with pytest.raises(ConfigError, match="nothing about hand_offset_std_m"):
+    with pytest.raises(ConfigError, match="cannot tune hand_offset_std_m"):
         posed.check(["hand_offset_std_m"])
 
 

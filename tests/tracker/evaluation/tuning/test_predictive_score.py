@@ -67,7 +67,7 @@ def test_a_tracker_whose_gate_rejects_true_measurements_scores_worse():
     assert narrow < open_ - 0.5
 
 
-def test_who_foretells_nothing_gets_one_over_the_area():
+def test_who_predicts_nothing_gets_one_over_the_area():
     first = score_steps(steps_of(walk(3, 1)), MATCHED).log_densities
     area_m2 = np.pi * MATCHED.person_range_max_m**2
     assert first == pytest.approx([-np.log(area_m2)])
