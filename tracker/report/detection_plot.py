@@ -1,4 +1,4 @@
-"""Where does detection succeed, and what fools it? One picture of an evaluation."""
+"""One plot of an evaluation: recall by distance and other factors, and false raises."""
 
 from __future__ import annotations
 

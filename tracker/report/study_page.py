@@ -1,4 +1,4 @@
-"""What does a study's page hold? Figures against expectations, spreads, and the worst trials."""
+"""The page of a study: figures with their expectations, spreads, and the worst trials."""
 
 from __future__ import annotations
 

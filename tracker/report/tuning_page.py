@@ -1,4 +1,4 @@
-"""What does a search's page hold? The verdict on the unseen, the winner, and what was tried."""
+"""The page of a search: the final test, the best parameters, and all trials."""
 
 from __future__ import annotations
 
