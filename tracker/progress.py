@@ -22,7 +22,7 @@ from rich.text import Text
 
 from tracker.wording import counted
 
-#: Without a terminal a line is printed so often, in seconds.
+#: Without a terminal, a line is printed at this interval, in seconds.
 _SILENCE_S = 10.0
 
 
@@ -66,7 +66,7 @@ def bar(console: Console, what: str) -> Iterator[Callable[[float, int], None]]:
 
 @contextmanager
 def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[int], None]]:
-    """Show how many are done, how many a second, and the time left.
+    """Show how many are done, how many per second, and the time left.
 
     Args:
         console: Where to.
@@ -74,7 +74,7 @@ def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
         total: How many there will be.
 
     Yields:
-        A function of how many are done; the first call tells how many were done before.
+        A function of how many are done; the first call says how many were done before.
     """
     if not console.is_terminal:
         console.print(f"Running {counted(total, what)} ...", highlight=False)
@@ -98,12 +98,12 @@ def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
 def trials_bar(
     console: Console, trials: int, unseen: int | None
 ) -> Iterator[tuple[Callable[[int, float], None], Callable[[int], None]]]:
-    """Show how many trials of a search are done, and the best figure so far; then the verdict.
+    """Show how many trials of a search are done, and the best so far; then the final test.
 
     Args:
         console: Where to.
         trials: In all.
-        unseen: Scenes that the verdict looks at; None where they are not counted.
+        unseen: Scenes of the final test; None if they are not counted.
 
     Yields:
         A function of the number of trials and the figure (NaN before there is one), and one of the

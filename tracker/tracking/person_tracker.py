@@ -1,4 +1,4 @@
-"""The whole tracker in one call: measurements of an instant in, everybody's state out."""
+"""The whole tracker in one call: measurements of one instant in, tracks out."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ NO_LIKENESS = sealed(np.zeros((0, 0)))
 class PersonTracker:
     """Kalman-filtered customers, from raised hands and the people in the scan.
 
-    Raised hands create customers and feed their streaks; everything else only sustains and refines
-    those who are there. Bystanders, whom only the scan shows, are followed as well: what is known
-    to be somebody else's is not taken for a customer's. Identities count from 1 and are never
-    reused by one tracker.
+    Raised hands create customers and count for their streaks. Other measurements only keep known
+    people alive and improve their positions. Bystanders, who are only in the scan, are tracked as
+    well, so that their measurements are not assigned to customers. Identities count from 1 and are
+    never reused by one tracker.
 
     Args:
         config: The groups tracking, selection and service.
@@ -47,9 +47,9 @@ class PersonTracker:
         associate: An association of your own: log-odds of every track and measurement, shape
             (N, M), -inf outside the gate -> probabilities of the same shape, instead of
             `association` in the configuration.
-        watch: Told of every frame and what happened inside; see `tracking.trace`.
-        compiled: Let numba do a frame's work, as soon as it is compiled; the numbers are the same
-            up to rounding. With a function of your own Python does it.
+        watch: Called with every frame and what happened inside; see `tracking.trace`.
+        compiled: Use the compiled frame as soon as it is there; the results are equal except for
+            rounding. With a function of your own, frames run as Python.
     """
 
     def __init__(

@@ -59,7 +59,7 @@ def test_unseen_scenes_are_no_scenes_of_the_search():
     assert min(asked) > 10_000 > SHORT.parts
 
 
-def test_a_recording_is_foretold_best_with_its_own_noise():
+def test_a_recording_is_predicted_best_with_its_own_noise():
     told = Config()
     recording = RecordingObjective("a.mcap", steps_of_a_minute(0.25, told), told)
     true, stated = Config(range_std_m=0.25), told

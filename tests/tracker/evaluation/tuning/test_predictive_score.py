@@ -75,7 +75,7 @@ def test_who_predicts_nothing_gets_one_over_the_area():
 
 @pytest.mark.parametrize("polar", [False, True], ids=["positions", "heavy-tailed ranges"])
 @pytest.mark.parametrize("motion", ["cv", "imm"])
-def test_what_is_foretold_is_a_density(polar, motion):
+def test_what_is_predicted_is_a_density(polar, motion):
     """Summed over a fine grid of possible next measurements, it comes to one."""
     config = MATCHED.replace(motion=motion, outlier_dof=1.5, gate_probability=0.999999)
     half_m, spacing_m = 2.0, 0.08
