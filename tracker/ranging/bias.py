@@ -1,7 +1,7 @@
 """Which errors of a position last? Legs beside the torso, hand beside the body, yaw, stamps.
 
 Sensors that move with velocity v and turn rate w, and whose stamps are late by t, measure a place
-at distance d with an error of t u, with
+at the offset d from them with an error of t u, with
 
     u = v + w (-d_y, d_x).
 
