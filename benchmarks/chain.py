@@ -22,7 +22,7 @@ from tracker import Config, Pipeline
 from tracker.containers import CameraImage, Hands
 from tracker.perception import HandDetector, open_detector
 from tracker.perception.models import ModelStore, ensure_models
-from tracker.replay_outputs import ReplayOutputs
+from tracker.replay.outputs import ReplayOutputs
 from tracker.simulation import load_scene, simulate
 
 

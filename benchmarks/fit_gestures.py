@@ -34,7 +34,7 @@ from tracker.perception.gestures.model import SIGNS, SignNetwork, sign_probabili
 from tracker.perception.gestures.over_time import SURE
 from tracker.perception.gestures.reading import GestureReader
 from tracker.perception.gestures.shape import hand_shape
-from tracker.perception.hand_finder import HandFinder
+from tracker.perception.hands.hand_finder import HandFinder
 from tracker.simulation.hand_signs import ANYHOW, HOLDS, draw_hands
 
 FIT_SEED, CHECK_SEED = 1701, 1702

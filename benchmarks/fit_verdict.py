@@ -33,9 +33,9 @@ from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.perception import open_detector
 from tracker.perception.call_finder import CallFinder
 from tracker.perception.verdict.weights import NAMES
-from tracker.simulation.camera_view import CameraView, raised_hand_pixels
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.rendering.camera_view import CameraView, raised_hand_pixels
 from tracker.simulation.scene import Scene
 from tracker.simulation.stream import map_from_camera
 

@@ -91,8 +91,8 @@ def drawn_hands(count: int) -> Callable[[int], np.ndarray]:
     """Pictures of raised hands that drift to and fro, each over a noisy wall."""
     import cv2
 
-    from tracker.simulation.canvas import Canvas
-    from tracker.simulation.hand_shape import paint_hand
+    from tracker.simulation.rendering.canvas import Canvas
+    from tracker.simulation.rendering.hand_shape import paint_hand
 
     canvas = Canvas(0.11, 0.32, 700.0)
     canvas.paint([[(0.0, -0.04, 0.03), (0.0, 0.08, 0.025)]], (120, 160, 214), 0.02)

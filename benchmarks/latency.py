@@ -20,8 +20,8 @@ from rich.console import Console
 from rich.table import Table
 
 from nodes.dds import Node
-from nodes.qos import PROFILES
-from nodes.topics import OUTPUT_TYPES, Input, Output
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import OUTPUT_TYPES, Input, Output
 from tracker.camera import CameraModel
 from tracker.containers import CameraImage, Truth
 from tracker.messages import encode

@@ -18,9 +18,9 @@ from tracker.config import Config
 from tracker.containers import CameraImage
 from tracker.perception import HandDetector, open_detector
 from tracker.simulation import scene_from_mapping
-from tracker.simulation.camera_view import CameraView
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.rendering.camera_view import CameraView
 from tracker.simulation.stream import map_from_camera
 
 CONTENDERS = {

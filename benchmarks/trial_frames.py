@@ -35,8 +35,8 @@ from tracker.containers.arrays import frozen
 from tracker.evaluation.trials.filter_loop import filter_trials
 from tracker.evaluation.trials.known_people_loop import follow
 from tracker.evaluation.trials.machine_code import machine_code
-from tracker.tracking.claims import claims_of
-from tracker.tracking.motion import walk
+from tracker.tracking.prediction.motion import walk
+from tracker.tracking.sensing.claims import claims_of
 
 PERIOD_S, BEARING_STD_RAD, RANGE_STD_M, DENSITY = 0.1, 0.01, 0.05, 0.3
 START_COVARIANCE = np.diag([0.01, 0.01, 0.25, 0.25])

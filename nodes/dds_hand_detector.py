@@ -17,16 +17,16 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from nodes.core import NodeCore
 from nodes.dds.endpoints import Subscription
 from nodes.dds.links import LinkWatch
 from nodes.dds.names import Names
 from nodes.dds.node import Node
 from nodes.dds.parameters import ParameterServer
 from nodes.dds.profiles import CLOCK, ROSOUT
-from nodes.diagnostics import REPORT_PERIOD_S
-from nodes.qos import PROFILES
-from nodes.topics import (
+from nodes.shared.core import NodeCore
+from nodes.shared.diagnostics import REPORT_PERIOD_S
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import (
     ENABLE_SERVICE,
     OUTPUT_TYPES,
     RELEASE_SERVICE,
@@ -35,15 +35,15 @@ from nodes.topics import (
     InputTopic,
     input_topics,
 )
-from tracker.command_help import VersionOption, help_of
 from tracker.config import NODE_NAME, Config
 from tracker.errors import ConfigError, TrackerError
 from tracker.messages import Encoded
-from tracker.messages.encode import header
+from tracker.messages.parts import header
 from tracker.messages.types import build, deserialize, serialize
-from tracker.parameter_file import is_ours, read_assignment, read_parameters
-from tracker.program import run_program
-from tracker.retired_parameters import without_retired
+from tracker.parameters.retired import without_retired
+from tracker.parameters.ros_file import is_ours, read_assignment, read_parameters
+from tracker.terminal.command_help import VersionOption, help_of
+from tracker.terminal.program import run_program
 
 _LOG_TYPE = "rcl_interfaces/msg/Log"
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
@@ -240,7 +240,7 @@ def command(
     """
     from rich.console import Console
 
-    from tracker.progress import fetch_models_if_needed, telling
+    from tracker.terminal.progress import fetch_models_if_needed, telling
     from tracker.tracking.machine_frame import begin_compiling
 
     name = Names(NODE_NAME, namespace, remap or ()).full_node_name

@@ -13,11 +13,11 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from nodes.ros_parameters import RosParameters
-from nodes.ros_wiring import RosWiring
+from nodes.ros.parameters import RosParameters
+from nodes.ros.wiring import RosWiring
 from tracker.config import NODE_NAME
 from tracker.errors import ConfigError, TrackerError
-from tracker.program import print_version
+from tracker.terminal.program import print_version
 
 #: What makes names that are no parameters known.
 FROM_OVERRIDES = {"automatically_declare_parameters_from_overrides": True}

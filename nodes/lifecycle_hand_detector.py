@@ -8,9 +8,9 @@ from typing import Any
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 from nodes.hand_detector import FROM_OVERRIDES, run
-from nodes.memory import give_back
-from nodes.ros_parameters import RosParameters
-from nodes.ros_wiring import RosWiring
+from nodes.ros.memory import give_back
+from nodes.ros.parameters import RosParameters
+from nodes.ros.wiring import RosWiring
 from tracker.config import NODE_NAME
 from tracker.errors import TrackerError
 

@@ -2,7 +2,7 @@
 
 from typing import NoReturn
 
-from tracker.program import run_program
+from tracker.terminal.program import run_program
 
 
 def main() -> NoReturn:

@@ -96,7 +96,7 @@ def test_a_workspace_is_built_with_everything_ros_looks_for(colcon, workspace, h
 def test_colcon_test_runs_the_tests(colcon, workspace):
     colcon("build", cwd=workspace)
     colcon(
-        "test", "--return-code-on-test-failure", "--pytest-args", "tests/nodes/test_qos.py",
+        "test", "--return-code-on-test-failure", "--pytest-args", "tests/nodes/shared/test_qos.py",
         cwd=workspace,
     )  # fmt: skip
     report = workspace / "build" / PACKAGE / "pytest.xml"

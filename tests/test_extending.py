@@ -13,8 +13,8 @@ import pytest
 import tracker
 from tracker import Config, Measurements, PersonTracker
 from tracker.containers.sensor_kind import ABSENT, SensorKind
-from tracker.tracking import sensor_kinds
 from tracker.tracking.machine_frame import compile_tracker
+from tracker.tracking.sensing import sensor_kinds
 
 PROJECT = Path(__file__).parents[1]
 PAGE = (PROJECT / "docs" / "extending.md").read_text(encoding="utf-8")
@@ -249,8 +249,8 @@ def test_the_table_of_sensor_kinds_is_as_the_page_says():
     assert len(ABSENT) == len(SensorKind) == sensor_kinds.KINDS
     for path in re.findall(r"`((?:tracker|tests)/[\w/]+\.py)`", text):
         assert (PROJECT / path).is_file()
-    for name in re.findall(r"`(\w+)\.py`", text):
-        assert hasattr(importlib.import_module(f"tracker.tracking.{name}"), "POSITION")
+    for room, name in re.findall(r"`(\w+)/(\w+)\.py`", text):
+        assert hasattr(importlib.import_module(f"tracker.tracking.{room}.{name}"), "POSITION")
 
 
 def test_a_disparity_is_what_the_page_says_of_it():

@@ -17,14 +17,14 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from tracker.errors import ConfigError
 from tracker.gesture import Gesture, gestures_named
-from tracker.parameter_file import NODE_NAME as NODE_NAME  # where it is looked for
-from tracker.parameter_file import is_ours, read_parameters
-from tracker.retired_parameters import (
+from tracker.parameters.retired import (
     LATELY_RETIRED,
     RETIRED,
     without_lately_retired,
     without_retired,
 )
+from tracker.parameters.ros_file import NODE_NAME as NODE_NAME  # where it is looked for
+from tracker.parameters.ros_file import is_ours, read_parameters
 from tracker.wording import shown
 
 #: Python's own warning, at the line that called `Config.from_yaml`.

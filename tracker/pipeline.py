@@ -30,12 +30,12 @@ from tracker.depth_sense import DepthSense, DepthSight
 from tracker.geometry import RigidTransform
 from tracker.gesture import Gesture
 from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan, shown_ns
+from tracker.locating.picture_camera import PictureCameras, configured_camera
 from tracker.notes import Note, NoteKind
 from tracker.perception.detector import HandDetector, PiecewiseDetector
 from tracker.perception.gestures.customers import CustomerGestures
 from tracker.perception.gestures.reading import GestureReader
 from tracker.perception.upright import Turn, upright_turn
-from tracker.picture_camera import PictureCameras, configured_camera
 from tracker.ranging import (
     Memory,
     bearing_span_rad,
@@ -311,6 +311,7 @@ class Pipeline:
             frame_id=place.frame_id,
             work=piecewise.work if piecewise is not None else None,
             waiting_list=self.tracker.calls.now,
+            room_map=None if room is None else room.located,
         )
 
     def configure(self, config: Config) -> None:

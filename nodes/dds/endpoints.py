@@ -11,7 +11,7 @@ from cyclonedds.core import Policy, ReadCondition
 from cyclonedds.internal import SampleInfo
 
 from nodes.dds.raw import RawReader, RawWriter
-from nodes.qos import Profile
+from nodes.shared.qos import Profile
 
 #: Takes a serialized message, and where it is from.
 TakeFrom = Callable[[bytes, SampleInfo], None]

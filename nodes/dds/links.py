@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from nodes.dds.endpoints import Subscription
 from nodes.dds.node import Node
 from nodes.dds.sockets import SocketLoad, own_sockets
-from nodes.link import Link
-from nodes.topics import Input
+from nodes.shared.link import Link
+from nodes.shared.topics import Input
 
 #: Reports that "of late" goes over, as in /diagnostics.
 _REPORTS = 10

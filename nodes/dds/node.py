@@ -37,7 +37,7 @@ from nodes.dds.services import (
     response_type,
 )
 from nodes.dds.sockets import enlarge_own_sockets
-from nodes.qos import Profile
+from nodes.shared.qos import Profile
 from tracker.closing import Closing
 from tracker.errors import ConfigError, RecordingError
 from tracker.messages import type_hash

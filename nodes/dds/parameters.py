@@ -9,10 +9,10 @@ import numpy as np
 
 from nodes.dds.node import Node
 from nodes.dds.profiles import PARAMETER_EVENTS, PARAMETER_SERVICES
-from nodes.parameters import Descriptor, changed, descriptors
+from nodes.shared.parameters import Descriptor, changed, descriptors
 from tracker.config import Config
 from tracker.errors import ConfigError
-from tracker.messages.encode import header
+from tracker.messages.parts import header
 from tracker.messages.types import build, serialize
 
 _EVENT = "rcl_interfaces/msg/ParameterEvent"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cyclonedds.core import Policy, Qos
 
-from nodes.qos import Profile
+from nodes.shared.qos import Profile
 
 _UNLIMITED = -1
 

@@ -3,17 +3,19 @@
 On the wire what is published is kept, and time stands still until told.
 """
 
+import importlib.util
 import threading
 import time
 from functools import cache
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from nodes.core import NodeCore
-from nodes.topics import Input, Output
+from nodes.shared.core import NodeCore
+from nodes.shared.topics import Input, Output
 from tracker import CameraImage, Config, Hands, Scan
 from tracker.containers import DepthImage
 from tracker.geometry import RigidTransform
@@ -23,6 +25,7 @@ from tracker.replay import replay
 from tracker.simulation import load_scene, write_simulation
 from tracker.transforms import StampedTransform
 
+ROOT = Path(__file__).parents[2]
 START_NS = 1_000_000_000_000
 FRAME_NS = 33_333_333
 
@@ -181,3 +184,66 @@ def replayed(recording, tmp_path_factory, model_store):
         return SimpleNamespace(raised=raised, xy=xy)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def waiter_class():
+    """`Waiter` of examples/waiter.py, which knows no ROS."""
+    spec = importlib.util.spec_from_file_location("waiter", ROOT / "examples/waiter.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.Waiter
+
+
+class Guests:
+    """Who is to be served in a scene, by the scene's own words."""
+
+    #: A raise has been noticed after so long: two images and a margin.
+    TO_NOTICE_S = 0.5
+
+    def __init__(self, scene):
+        self.people = scene.people
+
+    def order(self, service_s):
+        """Numbers of the people in the order of service, each of which takes so long.
+
+        The first who called is served first. A raise before the end of that service belongs to
+        the same call, a later one is a new call.
+        """
+        raises = sorted((span.from_s, one.id) for one in self.people for span in one.raises)
+        served, free_s, over_s = [], 0.0, {}
+        for at_s, number in raises:
+            if at_s < over_s.get(number, 0.0):
+                continue
+            served.append(number)
+            free_s = over_s[number] = max(free_s, at_s + self.TO_NOTICE_S) + service_s
+        return served
+
+    def known_as(self, customers, places):
+        """The people behind the customers' numbers, by their places on the waiting list."""
+        xy_m = np.array([(one.path[0].x_m, one.path[0].y_m) for one in self.people])
+        found = []
+        for customer in customers:
+            away_m = np.linalg.norm(xy_m - places[customer], axis=1)
+            assert away_m.min() < 0.6, f"#{customer} at {places[customer]} is nobody"
+            found.append(self.people[int(away_m.argmin())].id)
+        return found
+
+
+@pytest.fixture(scope="session")
+def guests_of():
+    return Guests
+
+
+@pytest.fixture(scope="session")
+def scene_recording(tmp_path_factory):
+    """A scene by its name, and its recording as `raised-hand demo` makes it."""
+
+    @cache
+    def record(name):
+        scene = load_scene(name)
+        path = tmp_path_factory.mktemp("scene") / f"{name}.mcap"
+        write_simulation(scene, path, seed=1, jpeg_quality=92)
+        return scene, path
+
+    return record

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nodes.topics import Input
+from nodes.shared.topics import Input
 from tracker import CameraImage
 from tracker.geometry import RigidTransform
 from tracker.messages import Encoded, encode

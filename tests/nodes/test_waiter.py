@@ -1,31 +1,19 @@
 """examples/waiter.py against the node's core: messages over a wire, time by frames."""
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from nodes.topics import Input, Output
+from nodes.shared.topics import Input, Output
 from tracker import Config, Hands, Scan
 from tracker.messages import encode
 from tracker.messages.types import STRING, build, serialize
 
 START_NS = 1_000_000_000_000
 PERIOD_NS = 100_000_000
-EXAMPLE = Path(__file__).parents[2] / "examples/waiter.py"
 
 #: Bearing in rad and range in m; who raises a hand from when to when, in s.
 ANNA, BERT = (0.0, 2.0), (-0.35, 3.0)
 CALLS = {ANNA: (0.0, 3.0), BERT: (1.0, 4.0)}
-
-
-@pytest.fixture(scope="module")
-def waiter_class():
-    spec = importlib.util.spec_from_file_location("waiter", EXAMPLE)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.Waiter
 
 
 def hands_at(bearings_rad):

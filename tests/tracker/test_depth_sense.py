@@ -9,9 +9,9 @@ from tracker.containers import DepthImage, Truth
 from tracker.errors import TrackerError
 from tracker.notes import NoteKind
 from tracker.simulation import load_scene, simulate
-from tracker.simulation.camera_view import hands_in_view, raised_hand_pixels
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.rendering.camera_view import hands_in_view, raised_hand_pixels
 from tracker.simulation.scene import Depth
 from tracker.simulation.stream import map_from_camera
 

@@ -4,6 +4,8 @@ import ast
 import importlib
 import subprocess
 import sys
+from collections import defaultdict
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -13,14 +15,13 @@ SOURCES = sorted((ROOT / "tracker").rglob("*.py"))
 
 #: From the ground up. A file may import its own room and the floors below, never its neighbors.
 FLOORS = [
-    {"errors", "closing", "notes", "clock_offset", "gesture", "user_cache", "wording"},
-    {"outputs", "yaml_reading", "program"},
-    {"parameter_file", "retired_parameters"},
+    {"errors", "closing", "notes", "gesture", "user_cache", "wording"},
+    {"outputs", "parameters"},
     {"containers", "config"},
     {"geometry", "config_file", "lens"},
     {"camera", "transforms", "compiling", "service"},
-    {"perception", "ranging", "tracking", "messages", "waiting", "scan_use"},
-    {"problems", "picture_camera", "locating"},
+    {"perception", "ranging", "tracking", "messages", "waiting"},
+    {"problems", "locating"},
     {"depth_sense"},
     {"pipeline", "recording"},
     {"simulation"},
@@ -30,9 +31,9 @@ FLOORS = [
     {"evaluation.studies"},
     {"evaluation.detection", "evaluation.tuning"},
     {"report"},
-    {"replay_outputs", "dashboard"},
+    {"dashboard"},
     {"replay", "live"},
-    {"progress", "command_help"},
+    {"terminal"},
     {"cli"},
 ]
 FLOOR_OF = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
@@ -48,6 +49,14 @@ def imported_modules(path):
             yield node.lineno, node.module
             if node.module == "tracker":
                 yield from ((node.lineno, f"tracker.{alias.name}") for alias in node.names)
+
+
+def lines_for_type_checkers(path):
+    """The lines under `if TYPE_CHECKING:`, which never run."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    blocks = [node for node in ast.walk(tree) if isinstance(node, ast.If)]
+    blocks = [node for node in blocks if ast.unparse(node.test) == "TYPE_CHECKING"]
+    return {line for node in blocks for line in range(node.lineno, node.end_lineno + 1)}
 
 
 def room_of(module):
@@ -72,6 +81,28 @@ def test_a_file_imports_downwards_only(path):
         other = room_of(module)
         if other != room and other in FLOOR_OF:
             assert FLOOR_OF[other] < FLOOR_OF[room], f"{path}:{line} imports {module}"
+
+
+def test_no_two_rooms_of_a_folder_import_each_other():
+    needs = defaultdict(lambda: defaultdict(set))  # of each folder: what in it imports what in it
+    for path in [*SOURCES, *(ROOT / "nodes").rglob("*.py")]:
+        mine = module_of(path).split(".")
+        typing_only = lines_for_type_checkers(path)
+        for line, module in imported_modules(path):
+            if line in typing_only:
+                continue
+            theirs = module.split(".")
+            same = [one == two for one, two in zip(mine, theirs, strict=False)]
+            shared = [*same, False].index(False)
+            if 0 < shared < min(len(mine), len(theirs)):
+                needs[".".join(mine[:shared])][mine[shared]].add(theirs[shared])
+    found = []
+    for folder, graph in needs.items():
+        try:
+            TopologicalSorter(graph).prepare()
+        except CycleError as error:
+            found.append(f"in {folder}: {' <- '.join(error.args[1])}")
+    assert found == []
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))

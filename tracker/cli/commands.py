@@ -19,7 +19,7 @@ from tracker.cli.play import echo_command, play_command
 from tracker.cli.replay import replay_command
 from tracker.cli.simulate import simulate_command
 from tracker.cli.tune import tune_command
-from tracker.command_help import VersionOption, help_of
+from tracker.terminal.command_help import VersionOption, help_of
 
 # What OpenCV's readers have to say (8 is the video reader's "fatal"), our own line says better.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "8")

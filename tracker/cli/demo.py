@@ -22,7 +22,7 @@ from tracker.cli.options import (
 from tracker.cli.simulate import simulate
 from tracker.errors import RecordingError
 from tracker.outputs import check_inputs_stay
-from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed
+from tracker.terminal.progress import bar, compile_tracker_first, fetch_models_if_needed
 
 #: The demo's pictures go as JPEG: raw they would fill a gigabyte of the reader's disk.
 _DEMO_JPEG_QUALITY = 92
@@ -49,8 +49,8 @@ def demo_command(
     nothing else. The exit status is 1 if a raised hand was missed or invented.
     """
     from tracker.replay import replay
-    from tracker.replay_outputs import replay_files
-    from tracker.report.episode_table import episode_table
+    from tracker.replay.outputs import replay_files
+    from tracker.report.replay.episode_table import episode_table
 
     parameters = parameters_from(config, param)
     if depth:

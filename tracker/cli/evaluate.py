@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from tracker.cli.jobs import JobsOption, processes
 from tracker.cli.options import (
     ConfigOption,
+    JobsOption,
     JsonOption,
     ParameterOption,
     console,
@@ -21,8 +21,9 @@ from tracker.cli.options import (
 )
 from tracker.config import Config
 from tracker.errors import ConfigError
+from tracker.evaluation.studies.executor import processes
 from tracker.outputs import check_inputs_stay
-from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed
+from tracker.terminal.progress import bar, compile_tracker_first, fetch_models_if_needed
 
 _SCENES, _PHOTOS = "Drawn scenes", "Your own photos"
 
@@ -111,8 +112,8 @@ def evaluate_command(
 
         raised-hand evaluate my_photos --out evaluation -p model_complexity:=1
     """
-    from tracker.report.detection_table import SCENE_FILES
-    from tracker.report.photo_table import PHOTO_FILES
+    from tracker.report.detection.detection_table import SCENE_FILES
+    from tracker.report.detection.photo_table import PHOTO_FILES
 
     # One thread for each of the processes; more would only get into each other's way.
     settings = parameters_from(config, param, Config(inference_threads=1))
@@ -142,7 +143,7 @@ def _evaluate_scenes(
 ) -> None:
     from tracker.evaluation.detection.figures import detection_as_dict
     from tracker.evaluation.detection.study import study_detection
-    from tracker.report.detection_table import false_table, recall_table, write_detection
+    from tracker.report.detection.detection_table import false_table, recall_table, write_detection
 
     fetch_models_if_needed(errors)
     compile_tracker_first(errors)
@@ -174,7 +175,7 @@ def _evaluate_photos(
     from tracker.evaluation.detection.photo_labels import read_photos
     from tracker.evaluation.detection.photo_study import photos_as_dict, study_photos
     from tracker.perception import open_detector
-    from tracker.report.photo_table import clip_table, photo_tables, write_photos
+    from tracker.report.detection.photo_table import clip_table, photo_tables, write_photos
 
     photos, labeled_clips = read_photos(folder), read_clips(folder)
     fetch_models_if_needed(errors)

@@ -18,7 +18,7 @@ from tracker.cli.options import (
     parameters_from,
 )
 from tracker.errors import ConfigError
-from tracker.progress import fetch_models_if_needed, telling
+from tracker.terminal.progress import fetch_models_if_needed, telling
 from tracker.wording import counted
 
 #: The port of the page where nobody names another one.
@@ -27,13 +27,13 @@ _PORT = 8750
 
 def live_command(
     source: Annotated[
-        str,
+        str | None,
         typer.Argument(
-            help="A camera's number, a device such as /dev/video0, an address such as "
-            "rtsp://..., a GStreamer pipeline that ends in `appsink`, or a recording or "
+            help="A camera's number (0 by default), a device such as /dev/video0, an address such "
+            "as rtsp://..., a GStreamer pipeline that ends in `appsink`, or a recording or "
             "video, which is played as if it were live."
         ),
-    ] = "0",
+    ] = None,
     simulated: Annotated[
         bool, typer.Option("--simulated", help="Show a simulated scene instead of a camera.")
     ] = False,
@@ -81,6 +81,11 @@ def live_command(
     check_is_no_folder("--record", record)
     if record is not None and record.suffix.lower() != ".mcap":
         raise ConfigError(f"--record is {record}; expected a name that ends in .mcap.")
+    if simulated and source is not None:
+        raise ConfigError(
+            f"--simulated needs no camera ({source} was given); name a scene with --scene {source}"
+        )
+    source = source or "0"
     title = f"simulated: {scene}" if simulated else f"camera {source}"
     with ExitStack() as held:
         if simulated:

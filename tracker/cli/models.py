@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from tracker.cli.options import JsonOption, console, errors, print_json
-from tracker.command_help import help_of
 from tracker.outputs import check_inputs_stay
+from tracker.terminal.command_help import help_of
 
 models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
 
@@ -38,7 +38,7 @@ def models_fetch(
     environment variable RAISED_HAND_MODELS to it.
     """
     from tracker.perception.models import ModelStore, fetch_models
-    from tracker.progress import compile_tracker_first, fetch_progress
+    from tracker.terminal.progress import compile_tracker_first, fetch_progress
 
     store = ModelStore(to)
     check_inputs_stay([source], [row.path for row in store.status()])

@@ -10,9 +10,10 @@ from typing import Annotated
 
 import typer
 
-from tracker.cli.jobs import ExecutorOption, JobsOption, open_executor
 from tracker.cli.options import (
     ConfigOption,
+    ExecutorOption,
+    JobsOption,
     JsonOption,
     ParameterOption,
     ReportOption,
@@ -25,8 +26,9 @@ from tracker.cli.options import (
     print_json,
 )
 from tracker.errors import ConfigError
+from tracker.evaluation.studies.executor import open_executor
 from tracker.outputs import check_inputs_stay
-from tracker.progress import compile_tracker_first, counting_bar
+from tracker.terminal.progress import compile_tracker_first, counting_bar
 
 
 class TableFormat(str, Enum):
@@ -92,8 +94,13 @@ def monte_carlo_command(
         ScanScenario,
         default_config,
     )
-    from tracker.report.study_page import study_page
-    from tracker.report.study_table import STUDY_FILES, study_table, write_parquet, write_study
+    from tracker.report.studies.study_page import study_page
+    from tracker.report.studies.study_table import (
+        STUDY_FILES,
+        study_table,
+        write_parquet,
+        write_study,
+    )
 
     if scenario is None:
         for name, item in SCENARIOS.items():

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from tracker.config import Config
 from tracker.errors import ConfigError
-from tracker.parameter_file import read_assignment
+from tracker.parameters.ros_file import read_assignment
 from tracker.wording import one_line
 
 console = Console()
@@ -36,6 +36,17 @@ ReportOption = Annotated[
     ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
+JobsOption = Annotated[
+    int, typer.Option("--jobs", "-j", help="Number of processes; 0 means one per core.", min=0)
+]
+ExecutorOption = Annotated[
+    str,
+    typer.Option(
+        "--executor",
+        help="What runs the trials: processes (on this machine), or a Dask cluster, given as the "
+        "address of its scheduler, dask://host:port.",
+    ),
+]
 
 
 def parameters_from(

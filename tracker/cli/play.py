@@ -10,7 +10,7 @@ import typer
 
 from tracker.cli.options import complain, console, errors
 from tracker.errors import ConfigError
-from tracker.progress import bar
+from tracker.terminal.progress import bar
 from tracker.wording import one_line
 
 
@@ -42,7 +42,7 @@ def play_command(
 
     Nodes are met as ROS 2 does: by ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE.
     """
-    from nodes.play import play
+    from nodes.dds.play import play
 
     if not source.exists():
         raise ConfigError(f"{source}: there is no such file or folder.")
@@ -76,7 +76,7 @@ def echo_command(
     ] = None,
 ) -> None:
     """Print what ROS 2 nodes publish on a topic, without ROS (needs the extra `dds`)."""
-    from nodes.echo import echo
+    from nodes.dds.echo import echo
 
     try:
         echo(

@@ -29,7 +29,7 @@ from tracker.cli.options import (
 )
 from tracker.errors import ConfigError
 from tracker.outputs import check_inputs_stay
-from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed
+from tracker.terminal.progress import bar, compile_tracker_first, fetch_models_if_needed
 from tracker.wording import counted
 
 
@@ -91,10 +91,10 @@ def replay_command(
     from tracker.dashboard import Dashboard, DashboardServer
     from tracker.recording import Topics, load_map
     from tracker.replay import Watcher, replay
-    from tracker.replay_outputs import replay_files
-    from tracker.report.replay_page import ReplayReport
-    from tracker.report.rerun_view import RerunView
-    from tracker.report.summary import summary_table
+    from tracker.replay.outputs import replay_files
+    from tracker.report.replay.replay_page import ReplayReport
+    from tracker.report.replay.summary import summary_table
+    from tracker.report.video.rerun_view import RerunView
 
     if stamps not in ("header", "log"):
         raise ConfigError(f"--stamps is {stamps!r}; allowed is header or log.")

@@ -9,7 +9,7 @@ import typer
 
 from tracker.cli.options import errors, print_files
 from tracker.outputs import check_inputs_stay
-from tracker.progress import bar
+from tracker.terminal.progress import bar
 
 
 def simulate_command(

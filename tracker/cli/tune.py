@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tracker.cli.jobs import JobsOption, processes, workers
 from tracker.cli.options import (
     ConfigOption,
+    JobsOption,
     JsonOption,
     ParameterOption,
     ReportOption,
@@ -24,8 +24,14 @@ from tracker.cli.options import (
 )
 from tracker.config import Config
 from tracker.errors import ConfigError, RecordingError
+from tracker.evaluation.studies.executor import processes, workers
 from tracker.outputs import check_inputs_stay
-from tracker.progress import bar, compile_tracker_first, fetch_models_if_needed, trials_bar
+from tracker.terminal.progress import (
+    bar,
+    compile_tracker_first,
+    fetch_models_if_needed,
+    trials_bar,
+)
 
 if TYPE_CHECKING:
     from tracker.evaluation.tuning.objective import Objective
@@ -127,8 +133,8 @@ def tune_command(
     from tracker.evaluation.tuning.search import check_optuna, tune
     from tracker.evaluation.tuning.space import DEFAULT_KINDS, choose_parameters
     from tracker.recording import Topics
-    from tracker.report.tuning_page import tuning_page
-    from tracker.report.tuning_table import (
+    from tracker.report.studies.tuning_page import tuning_page
+    from tracker.report.studies.tuning_table import (
         TUNING_FILES,
         parameters_table,
         verdict_table,

@@ -32,7 +32,7 @@ def folder() -> Path | None:
         f"numba {version('numba')}, Python {sys.version}, {processor}".encode(), digest_size=8
     )
     for room in _ROOMS:
-        for path in sorted((Path(__file__).parents[1] / room).glob("*.py")):
+        for path in sorted((Path(__file__).parents[1] / room).rglob("*.py")):
             content.update(path.read_bytes())
     return Path(place) / f"compiled-{content.hexdigest()}"
 

@@ -15,7 +15,7 @@ from tracker.containers.depth_image import DepthArray, DepthImage, depth_in_mete
 from tracker.containers.hands import Hands, Refusal
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
-from tracker.containers.occupancy_grid import OccupancyGrid
+from tracker.containers.occupancy_grid import LocatedMap, OccupancyGrid
 from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
 from tracker.containers.sensor_kind import SensorKind
 from tracker.containers.sensors import CameraImage, Scan
@@ -35,6 +35,7 @@ __all__ = [
     "Hands",
     "ImageArray",
     "IntArray",
+    "LocatedMap",
     "LocatedScan",
     "Measurements",
     "OccupancyGrid",

@@ -269,5 +269,18 @@ def are_semidefinite(covariance: FloatArray) -> BoolArray:
     finite = np.asarray((np.abs(covariance) < VARIANCE_MAX).all(axis=(1, 2)))
     safe = np.where(finite[:, None, None], covariance, 0.0)
     asymmetry = np.abs(safe - np.swapaxes(safe, 1, 2)).max(axis=(1, 2))
-    least, most = np.linalg.eigvalsh(safe)[:, [0, -1]].T
+    least, most = _extreme_eigenvalues(safe)
     return np.asarray(finite & (asymmetry <= _ROUNDING * most) & (least >= -_ROUNDING * most))
+
+
+def _extreme_eigenvalues(symmetric: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Each of shape (M,): the least and the greatest of matrices of shape (M, n, n).
+
+    In closed form for two dimensions, as every frame asks for them.
+    """
+    if symmetric.shape[1:] != (2, 2):
+        values = np.asarray(np.linalg.eigvalsh(symmetric), dtype=np.float64)
+        return values[:, 0], values[:, -1]
+    first, second, mixed = symmetric[:, 0, 0], symmetric[:, 1, 1], symmetric[:, 1, 0]
+    middle, half = (first + second) / 2.0, np.hypot((first - second) / 2.0, mixed)
+    return np.asarray(middle - half), np.asarray(middle + half)

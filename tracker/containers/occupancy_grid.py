@@ -15,6 +15,8 @@ CellArray: TypeAlias = NDArray[np.int8]
 
 #: A cell that nobody has looked at.
 UNKNOWN = -1
+#: From so many percent on a cell counts as occupied; what map_server asks for by default.
+OCCUPIED_FROM = 65
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,3 +64,16 @@ class OccupancyGrid:
                 f"A map holds the numbers {low} to {high}; expected 0 to 100, and {UNKNOWN} "
                 "for unknown."
             )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LocatedMap:
+    """A map, and where it lies in the fixed frame.
+
+    Attributes:
+        grid: The map; its own origin is in its own frame.
+        origin: x_m, y_m, yaw_rad of the outer corner of cell [0, 0] in the fixed frame.
+    """
+
+    grid: OccupancyGrid
+    origin: tuple[float, float, float]

@@ -20,6 +20,7 @@ from tracker.containers.arrays import (
 from tracker.containers.hands import Hands
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
+from tracker.containers.occupancy_grid import LocatedMap
 from tracker.containers.tracks import Tracks
 from tracker.containers.waiting_list import WaitingList
 from tracker.errors import ShapeError
@@ -129,6 +130,7 @@ class FrameResult:
             camera's. None where it is unknown, so that no place can be given: a transform is
             missing that was there before, or there was none and the camera's axes are optical.
         waiting_list: Who waits for service, after this image.
+        room_map: The map that was used, in the fixed frame, if any.
         work: What perception did, where the detector tells; of all fields the only one that
             differs when the same recording is replayed.
     """
@@ -146,3 +148,9 @@ class FrameResult:
     frame_id: str | None = None
     work: PerceptionWork | None = None
     waiting_list: WaitingList = field(default_factory=WaitingList)
+    room_map: LocatedMap | None = None
+
+    @property
+    def is_on_floor(self) -> bool:
+        """Whether z = 0 of `frame_id` is the floor: not in a frame that begins at the camera."""
+        return self.sensor_pose is not None and bool(np.any(self.sensor_pose))

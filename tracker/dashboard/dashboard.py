@@ -18,11 +18,13 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult
 from tracker.dashboard.health import Health
+from tracker.dashboard.map_picture import MapPicture
 from tracker.dashboard.memory import Memory
 from tracker.dashboard.parameters import changed, live_parameters
 from tracker.errors import TrackerError
 from tracker.geometry import worst_std
-from tracker.report.debug_picture import draw_debug_image
+from tracker.report.fan import PLACED_STD_M, fan
+from tracker.report.video.debug_picture import draw_debug_image
 from tracker.service import Answer, Command
 
 #: Pictures for the page are at most so wide, and a scan has so many points.
@@ -71,6 +73,7 @@ class Dashboard:
         self._latest: tuple[CameraImage, FrameResult] | None = None
         self._number = 0
         self._memory, self._health = Memory(), Health()
+        self._map: MapPicture | None = None
         self._orders: deque[Callable[[], None]] = deque()
         self._said: deque[str] = deque(maxlen=5)
         self._shown: Shown | None = None
@@ -88,6 +91,9 @@ class Dashboard:
             self._memory.add(result)
             self._health.add(result, busy_s)
             self._number += 1
+            if result.room_map is not None:
+                before = self._map or MapPicture(1, result.room_map.grid)
+                self._map = before.after(result.room_map)
         self.follow_orders()
 
     def follow(self, config: Config) -> None:
@@ -129,15 +135,22 @@ class Dashboard:
                     return self._shown
                 past = self._memory.timeline()
                 trails = {one: self._memory.trail(one) for one in result.tracks.id.tolist()}
-                health = self._health.lines()
+                health, room_map = self._health.lines(), self._map
             state = _state(result, trails) | {
                 "timeline": past,
                 "health": health,
                 "said": list(self._said),
                 "frame": number,
             }
+            if result.room_map is not None and room_map is not None:
+                state["map"] = room_map.place(result.room_map)
             self._shown = Shown(number, state, self._draw(image, result))
             return self._shown
+
+    def map_png(self) -> bytes | None:
+        """The picture of the newest map; None without one."""
+        newest = self._map
+        return None if newest is None else newest.png()
 
     def _draw(self, image: CameraImage, result: FrameResult) -> bytes:
         factor = max(1, -(-image.width // _WIDTH_PX))
@@ -168,7 +181,7 @@ def _state(result: FrameResult, trails: dict[int, list[tuple[float, float]]]) ->
     """A frame in JSON's kinds of values; meters, radians and seconds."""
     tracks = result.tracks[result.tracks.confirmed]
     calls = result.waiting_list
-    people = []
+    people: list[dict[str, Any]] = []
     for row, track_id in enumerate(tracks.id.tolist()):
         covariance = tracks.covariance[row, :2, :2]
         people.append(
@@ -183,6 +196,9 @@ def _state(result: FrameResult, trails: dict[int, list[tuple[float, float]]]) ->
                 "trail": trails.get(track_id, []),
             }
         )
+        if worst_std(covariance) > PLACED_STD_M and result.sensor_pose is not None:
+            sides = fan(tracks.mean[row, :2], covariance, result.sensor_pose[:2])
+            people[-1]["fan"] = [round(side, 3) for side in sides]
     callers = [
         {
             "id": caller.id,

@@ -94,6 +94,7 @@ class DashboardServer(Closing):
         from starlette.routing import Route, WebSocketRoute
 
         routes = [Route(path, self._file) for path in _FILES]
+        routes.append(Route("/map.png", self._map))
         return Starlette(routes=[*routes, WebSocketRoute("/frames", self._frames)])
 
     async def _file(self, request: Any) -> Any:
@@ -104,6 +105,16 @@ class DashboardServer(Closing):
         path = _PAGE / _FILES[request.url.path]
         kind = _KINDS[path.suffix]
         return Response(path.read_bytes(), media_type=kind, headers=_HEADERS)
+
+    async def _map(self, request: Any) -> Any:
+        from starlette.responses import Response
+
+        if not self._is_allowed(request, needs_token=True):
+            return Response("The map needs the token of the page.", 403, headers=_HEADERS)
+        png = await asyncio.to_thread(self._dashboard.map_png)
+        if png is None:
+            return Response("There is no map yet.", 404, headers=_HEADERS)
+        return Response(png, media_type="image/png", headers=_HEADERS)
 
     async def _frames(self, websocket: Any) -> None:
         from starlette.websockets import WebSocketDisconnect

@@ -13,14 +13,12 @@ from tracker.camera import CameraModel
 from tracker.containers import CameraImage, DepthImage, OccupancyGrid, Pose, Scan, Tracks, Truth
 from tracker.errors import RecordingError
 from tracker.geometry import euler_to_quaternion
-from tracker.gesture import Gesture
 from tracker.messages import types
 from tracker.messages.depth import depth_message_fields, packed_depth_fields
+from tracker.messages.parts import header, point, ros_pose, turn
+from tracker.messages.people import tracks_message, truth_message
 from tracker.messages.types import Encoded, build, serialize
 from tracker.transforms import StampedTransform
-
-#: A person as a box: width and depth, height.
-_BODY_WIDTH_M, _BODY_HEIGHT_M = 0.5, 1.7
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +71,9 @@ def encode(item: Encodable, *, frame_id: str = "map", jpeg_quality: int | None =
     | bool | std_msgs/Bool |
     | str | std_msgs/String |
     | Pose | geometry_msgs/PoseStamped |
-    | Tracks | vision_msgs/Detection3DArray: id, `hand_raised` or `hand_lowered`, existence; and
-      `customer/` with a gesture, as `customer/wave`, where one is known |
-    | Truth | vision_msgs/Detection3DArray: the same, and `in_view` where that holds |
+    | Tracks | vision_msgs/Detection3DArray, as `encode_tracks` |
+    | Truth | vision_msgs/Detection3DArray: id, place, `hand_raised` or `hand_lowered`, and
+      `in_view` where that holds |
     | Encoded | itself |
 
     Args:
@@ -90,36 +88,6 @@ def encode(item: Encodable, *, frame_id: str = "map", jpeg_quality: int | None =
     if isinstance(item, Encoded):
         return item
     return serialize(_message(item, frame_id, jpeg_quality))
-
-
-def header(stamp_ns: int, frame_id: str) -> Any:
-    """A std_msgs/Header.
-
-    Raises:
-        RecordingError: The stamp does not fit into 32 bits of seconds.
-    """
-    sec, nanosec = divmod(int(stamp_ns), 1_000_000_000)
-    if not 0 <= sec < 2**31:
-        raise RecordingError(
-            f"A stamp of {stamp_ns} ns came; ROS messages hold 0 to {2**31 - 1} seconds."
-        )
-    time = build("builtin_interfaces/msg/Time", sec=sec, nanosec=nanosec)
-    return build("std_msgs/msg/Header", stamp=time, frame_id=frame_id)
-
-
-def point(x: float, y: float, z: float, kind: str = "Point") -> Any:
-    """A geometry_msgs/Point, or Vector3 by `kind`."""
-    return build(f"geometry_msgs/msg/{kind}", x=float(x), y=float(y), z=float(z))
-
-
-def ros_pose(
-    position_m: tuple[float, float, float],
-    quaternion_xyzw: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0),
-) -> Any:
-    """A geometry_msgs/Pose."""
-    return build(
-        "geometry_msgs/msg/Pose", position=point(*position_m), orientation=_turn(quaternion_xyzw)
-    )
 
 
 def _message(item: Encodable, frame_id: str, jpeg_quality: int | None) -> Any:
@@ -147,9 +115,9 @@ def _message(item: Encodable, frame_id: str, jpeg_quality: int | None) -> Any:
                 pose=ros_pose(item.position_m, item.quaternion_xyzw),
             )
         case Tracks():
-            return _tracks(item, frame_id)
+            return tracks_message(item, frame_id)
         case Truth():
-            return _truth(item, frame_id)
+            return truth_message(item, frame_id)
         case list() | tuple() if all(isinstance(part, StampedTransform) for part in item):
             return _transforms(item)
     raise RecordingError(
@@ -214,7 +182,7 @@ def _transforms(samples: Iterable[StampedTransform]) -> Any:
                 transform=build(
                     "geometry_msgs/msg/Transform",
                     translation=point(*sample.transform.translation_m, "Vector3"),
-                    rotation=_turn(sample.transform.quaternion_xyzw),
+                    rotation=turn(sample.transform.quaternion_xyzw),
                 ),
             )
             for sample in samples
@@ -256,93 +224,3 @@ def _map(grid: OccupancyGrid) -> Any:
         ),
         data=grid.cells.reshape(-1),
     )
-
-
-def _tracks(tracks: Tracks, frame_id: str) -> Any:
-    people = [
-        person(
-            track_id=int(tracks.id[row]),
-            xy=(float(tracks.mean[row, 0]), float(tracks.mean[row, 1])),
-            covariance=tracks.covariance[row, :2, :2],
-            words=_words(bool(tracks.raised[row]), Gesture(int(tracks.gesture[row]))),
-            score=float(tracks.existence[row]),
-            stamp=header(tracks.stamp_ns, frame_id),
-        )
-        for row in range(len(tracks))
-    ]
-    return build(types.DETECTIONS, header=header(tracks.stamp_ns, frame_id), detections=people)
-
-
-def _words(is_raised: bool, gesture: Gesture) -> list[str]:
-    words = ["hand_raised" if is_raised else "hand_lowered"]
-    return words if gesture is Gesture.NONE else [*words, f"customer/{gesture.word}"]
-
-
-def _truth(truth: Truth, frame_id: str) -> Any:
-    people = []
-    for row in range(len(truth)):
-        words = ["hand_raised" if truth.hand_up[row] else "hand_lowered"]
-        people.append(
-            person(
-                track_id=int(truth.id[row]),
-                xy=(float(truth.xy_m[row, 0]), float(truth.xy_m[row, 1])),
-                covariance=np.zeros((2, 2)),
-                words=[*words, "in_view"] if truth.in_view[row] else words,
-                score=1.0,
-                stamp=header(truth.stamp_ns, frame_id),
-            )
-        )
-    return build(types.DETECTIONS, header=header(truth.stamp_ns, frame_id), detections=people)
-
-
-def hypothesis(
-    word: str,
-    score: float,
-    position_m: tuple[float, float, float],
-    covariance_m2: Any,
-    quaternion_xyzw: tuple[float, float, float, float],
-) -> Any:
-    """A vision_msgs/ObjectHypothesisWithPose; of the 6x6 covariance x and y are estimated."""
-    spread = np.zeros((6, 6))
-    spread[:2, :2] = covariance_m2
-    return build(
-        "vision_msgs/msg/ObjectHypothesisWithPose",
-        hypothesis=build("vision_msgs/msg/ObjectHypothesis", class_id=word, score=score),
-        pose=build(
-            "geometry_msgs/msg/PoseWithCovariance",
-            pose=ros_pose(position_m, quaternion_xyzw),
-            covariance=spread.reshape(-1),
-        ),
-    )
-
-
-def person(
-    *,
-    track_id: int,
-    xy: tuple[float, float],
-    covariance: Any,
-    words: list[str],
-    score: float,
-    stamp: Any,
-    facing: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0),
-) -> Any:
-    """One vision_msgs/Detection3D; the pose stands on the floor, the box around the body.
-
-    Of the 6x6 covariance only x and y are estimated; the rest is zero.
-    """
-    return build(
-        "vision_msgs/msg/Detection3D",
-        header=stamp,
-        results=[hypothesis(word, score, (*xy, 0.0), covariance, facing) for word in words],
-        bbox=build(
-            "vision_msgs/msg/BoundingBox3D",
-            center=ros_pose((*xy, _BODY_HEIGHT_M / 2)),
-            size=point(_BODY_WIDTH_M, _BODY_WIDTH_M, _BODY_HEIGHT_M, "Vector3"),
-        ),
-        id=str(track_id),
-    )
-
-
-def _turn(quaternion_xyzw: tuple[float, float, float, float]) -> Any:
-    x, y, z, w = (float(value) for value in quaternion_xyzw)
-    return build("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)

@@ -6,7 +6,7 @@ import numpy as np
 
 from tracker.containers import FloatArray, Pose, Tracks
 from tracker.geometry import euler_to_quaternion
-from tracker.messages.encode import header, point, ros_pose
+from tracker.messages.parts import header, point, ros_pose
 from tracker.messages.types import MARKER_ARRAY, Encoded, build, serialize
 
 # visualization_msgs/Marker.

@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import FloatArray, Tracks, WaitingList
-from tracker.messages.encode import header, hypothesis, person
+from tracker.messages.parts import header
+from tracker.messages.people import (
+    YAW_OF_CALLER_RAD2,
+    YAW_UNKNOWN_RAD2,
+    hypothesis,
+    person,
+    pose_covariance,
+)
 from tracker.messages.types import DETECTIONS, Encoded, build, serialize
 from tracker.service.poses import approach_pose, call_pose
 
@@ -41,21 +48,21 @@ def encode_waiting_list(
         said = person(
             track_id=caller.id,
             xy=caller.xy_m,
-            covariance=pose.covariance_m2,
+            covariance=pose_covariance(pose.covariance_m2, YAW_OF_CALLER_RAD2),
             words=words,
             score=1.0,
             stamp=header(caller.called_ns, frame_id),
             facing=pose.quaternion_xyzw,
         )
-        stand = hypothesis(
-            APPROACH, 1.0, approach.position_m, pose.covariance_m2, approach.quaternion_xyzw
-        )
+        spread = np.zeros((6, 6))
+        spread[:2, :2] = pose.covariance_m2
+        stand = hypothesis(APPROACH, 1.0, approach.position_m, spread, approach.quaternion_xyzw)
         said.results.append(stand)
         detections.append(said)
     return _array(calls.stamp_ns, frame_id, detections)
 
 
-def encode_raised(tracks: Tracks, *, frame_id: str | None) -> Encoded:
+def encode_raised(tracks: Tracks, *, frame_id: str | None, is_on_floor: bool = True) -> Encoded:
     """Say whose hand is up, as a vision_msgs/Detection3DArray: `hand_raised` with a stamp.
 
     The array bears the stamp of the image, each detection the stamp at which that hand went up.
@@ -63,13 +70,16 @@ def encode_raised(tracks: Tracks, *, frame_id: str | None) -> Encoded:
     Args:
         tracks: Everybody.
         frame_id: Their frame; None where it is unknown: nothing but identities is said then.
+        is_on_floor: As of `encode_tracks`.
     """
     detections = []
     for row in np.flatnonzero(tracks.raised).tolist():
         said = person(
             track_id=int(tracks.id[row]),
             xy=tuple(tracks.mean[row, :2].tolist()),
-            covariance=tracks.covariance[row, :2, :2],
+            covariance=pose_covariance(
+                tracks.covariance[row, :2, :2], YAW_UNKNOWN_RAD2, is_on_floor=is_on_floor
+            ),
             words=["hand_raised"],
             score=float(tracks.existence[row]),
             stamp=header(int(tracks.raised_since_ns[row]), frame_id or ""),

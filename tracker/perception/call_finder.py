@@ -16,21 +16,21 @@ from tracker.containers import (
     PerceptionWork,
     Refusal,
 )
-from tracker.perception.bodies import Bodies
-from tracker.perception.gray import tint_gray
-from tracker.perception.hand_finder import HandFinder
-from tracker.perception.people_watch import LOOK_PLACES, PeopleWatch
-from tracker.perception.pictures import continues
-from tracker.perception.pose_hands import draw_hands
-from tracker.perception.verdict.belief import CALLS_FROM
-from tracker.perception.verdict.evidence import Seen, gather_evidence
-from tracker.perception.verdict.memory import HandMemory
-from tracker.perception.verdict.owners import (
+from tracker.perception.bodies.bodies import Bodies
+from tracker.perception.bodies.owners import (
     arms_without_hand,
     find_owners,
     hand_size_px,
     sure_owners,
 )
+from tracker.perception.bodies.people_watch import LOOK_PLACES, PeopleWatch
+from tracker.perception.hands.gray import tint_gray
+from tracker.perception.hands.hand_finder import HandFinder
+from tracker.perception.pictures import continues
+from tracker.perception.pose_hands import draw_hands
+from tracker.perception.verdict.belief import CALLS_FROM
+from tracker.perception.verdict.evidence import Seen, gather_evidence
+from tracker.perception.verdict.memory import HandMemory
 from tracker.perception.verdict.place_prior import PlacePrior
 from tracker.perception.verdict.weights import NAMES, log_odds, reasons
 

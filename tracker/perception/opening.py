@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from tracker.config import Config
-from tracker.perception.body_look import BodyLook, MediapipeLook
+from tracker.perception.bodies.body_look import BodyLook, MediapipeLook
+from tracker.perception.bodies.people_watch import PeopleWatch
+from tracker.perception.bodies.pose_file import PoseFile
 from tracker.perception.call_finder import CallFinder
 from tracker.perception.detector import HandDetector
-from tracker.perception.hand_finder import HandFinder
-from tracker.perception.mediapipe_hands import MediapipeHands
+from tracker.perception.hands.hand_finder import HandFinder
+from tracker.perception.hands.mediapipe_hands import MediapipeHands
 from tracker.perception.models import ModelStore
-from tracker.perception.people_watch import PeopleWatch
-from tracker.perception.pose_file import PoseFile
 from tracker.perception.pose_hands import PoseHands
 
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, Refusal
-from tracker.perception.bodies import ELBOWS, SHOULDERS, WRISTS, Bodies, one_row_each
-from tracker.perception.body_look import BodyLook
+from tracker.perception.bodies.bodies import ELBOWS, SHOULDERS, WRISTS, Bodies, one_row_each
+from tracker.perception.bodies.body_look import BodyLook
+from tracker.perception.bodies.owners import head_distance_px
 from tracker.perception.pictures import continues
-from tracker.perception.verdict.owners import head_distance_px
 from tracker.perception.verdict.raise_rules import judge_raised
 
 #: Adults' palms, from the wrist to the middle finger's root, against the width of the shoulders

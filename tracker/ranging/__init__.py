@@ -1,18 +1,18 @@
 """Scan -> how far a hand's owner is, and who else stands there."""
 
-from tracker.ranging.background import Background
-from tracker.ranging.beams import beam_index, median_range
 from tracker.ranging.bearing_span import bearing_span_rad
 from tracker.ranging.expected_hands import expected_hands
-from tracker.ranging.locating import locate_scan
 from tracker.ranging.measuring import measure_people, scan_people
 from tracker.ranging.memory import Memory
-from tracker.ranging.odd_scans import mend_scan
 from tracker.ranging.ownership import Ownership
-from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.postures import Postures
 from tracker.ranging.rays import body_pose, hand_rays
-from tracker.ranging.room_map import RoomMap
+from tracker.ranging.scan.background import Background
+from tracker.ranging.scan.beams import beam_index, median_range
+from tracker.ranging.scan.locating import locate_scan
+from tracker.ranging.scan.odd_scans import mend_scan
+from tracker.ranging.scan.people import PersonClusters, find_people
+from tracker.ranging.scan.room_map import RoomMap
 
 __all__ = [
     "Background",

@@ -18,16 +18,16 @@ from tracker.containers import (
     Tracks,
 )
 from tracker.geometry import RigidTransform, normalize_angle
-from tracker.ranging.background import Background
 from tracker.ranging.bias import bias_covariance
 from tracker.ranging.depth import HandDepths
 from tracker.ranging.hand_pairs import pair_hands
 from tracker.ranging.memory import Memory
-from tracker.ranging.people import PersonClusters, find_people
 from tracker.ranging.person_range import BESIDE_M
 from tracker.ranging.ray_range import range_along_rays
 from tracker.ranging.rays import HandRays, hand_rays
-from tracker.ranging.room_map import RoomMap
+from tracker.ranging.scan.background import Background
+from tracker.ranging.scan.people import PersonClusters, find_people
+from tracker.ranging.scan.room_map import RoomMap
 
 #: A body so wide or near that its bearing could be any: that of an even spread over the circle.
 _BEARING_STD_MAX_RAD = float(np.pi / np.sqrt(3.0))

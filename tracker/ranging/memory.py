@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from tracker.ranging.background import Background
 from tracker.ranging.ownership import Ownership
 from tracker.ranging.postures import Postures
+from tracker.ranging.scan.background import Background
 
 
 @dataclass(slots=True)

@@ -22,9 +22,7 @@ import numpy as np
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measurements, Tracks
-from tracker.ranging.background import Background
 from tracker.ranging.followed_hands import FollowedHands, HandMeans
-from tracker.ranging.people import PersonClusters
 from tracker.ranging.person_range import (
     BESIDE_M,
     LANDMARK_STD_PX,
@@ -37,11 +35,15 @@ from tracker.ranging.person_range import (
     ray_coordinates,
 )
 from tracker.ranging.rays import HandRays
+from tracker.ranging.scan.background import Background
+from tracker.ranging.scan.people import PersonClusters
 
 #: A cluster this close to where somebody tracked is expected shows them.
 SHOWN_M = 0.4
 #: The tracker is told so in log-odds: it would ask one image what all have answered.
 SURE = 20.0
+#: Where a body is may be off by so many standard deviations.
+_NOISE_STDS = 3.0
 #: A track this young may be anything; only its cluster speaks for it (guess).
 _TRACKED_AFTER_S = 1.0
 
@@ -103,7 +105,7 @@ class Ownership:
             stamp_ns: The image's.
             config: `arm_reach_m`, the spreads of where hands stand, and `newcomer_density`.
         """
-        length_px, breadth_px = palms_px(hands)
+        length_px, breadth_px = palms_px(hands, camera)
         heading = rays.bearing_rad + rays.origin[2]
         means = self._hands.follow(
             HandMeans(
@@ -119,18 +121,20 @@ class Ownership:
         range_m, spread = _ranges(means, camera)
         hidden, is_guess = self._hidden(tracked, people, stamp_ns)
         xy_m = np.concatenate([people.xy_m, hidden.xy_m])
-        unsure_m2 = np.concatenate([np.zeros((len(people), 2, 2)), hidden.covariance_m2])
+        of_cluster_m2 = np.tile(config.range_std_m**2 * np.eye(2), (len(people), 1, 1))
+        unsure_m2 = np.concatenate([of_cluster_m2, hidden.covariance_m2])
         by_shape = np.concatenate([people.log_odds, np.zeros(len(hidden.row))])
         log_there = background.log_person(xy_m, by_shape)
         log_there[len(people) :] += hidden.log_existence
 
         along, across = ray_coordinates(xy_m, rays.origin[:2], heading)
-        is_beside = (along > 0.0) & (np.abs(across) <= config.arm_reach_m)
-        along = np.maximum(along, 0.05)
-        beside_m = np.where(hands.is_owned, config.torso_offset_std_m, config.hand_offset_std_m)
         ahead = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
         left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
         along_m2, left_m2 = (np.einsum("hi,kij,hj->hk", to, unsure_m2, to) for to in (ahead, left))
+        reach_m = config.arm_reach_m + _NOISE_STDS * np.sqrt(left_m2)
+        is_beside = (along > 0.0) & (np.abs(across) <= reach_m)
+        along = np.maximum(along, 0.05)
+        beside_m = np.where(hands.is_owned, config.torso_offset_std_m, config.hand_offset_std_m)
         across_m2 = beside_m[:, None] ** 2 + left_m2
         size = np.isfinite(range_m)[:, None]
         log_ratio = np.where(size, np.log(along / range_m[:, None]), 0.0)

@@ -26,6 +26,7 @@ PALM_MIN_PX = 3.0
 #: From the index finger's root to the little finger's, in palm lengths (anthropometric tables).
 PALM_BREADTH = 0.68
 _WRIST, _THUMB_TIP, _INDEX_ROOT, _MIDDLE_ROOT, _PINKY_ROOT = 0, 4, 5, 9, 17
+_PALM = [_WRIST, _INDEX_ROOT, _MIDDLE_ROOT, _PINKY_ROOT]
 
 
 def owner_side(hands: Hands, roll_rad: float = 0.0) -> FloatArray:
@@ -41,7 +42,8 @@ def owner_side(hands: Hands, roll_rad: float = 0.0) -> FloatArray:
     """
     across = hands.landmarks_px[:, _THUMB_TIP] - hands.landmarks_px[:, _PINKY_ROOT]
     toward = across @ np.array([np.cos(roll_rad), -np.sin(roll_rad)])
-    side = -np.clip(toward / _palm_px(hands), -1.0, 1.0)
+    length, breadth = _palm(hands.landmarks_px[:, _PALM])
+    side = -np.clip(toward / np.maximum(1.0, np.maximum(length, breadth)), -1.0, 1.0)
     return np.asarray(np.where(hands.is_owned, 0.0, side))
 
 
@@ -56,7 +58,7 @@ def size_misfit(hands: Hands, camera: CameraModel, along_m: FloatArray) -> Float
     Returns:
         Shape (H, C); 0 where the palm is too short to tell.
     """
-    palm_px = _palm_px(hands)[:, None]
+    palm_px = np.maximum(*palms_px(hands, camera))[:, None]
     spread = np.hypot(RANGE_SPREAD, LANDMARK_STD_PX / palm_px)
     of_size = (np.log(np.maximum(along_m, 0.05) / range_of_palm_m(palm_px, camera)) / spread) ** 2
     return np.asarray(np.where(palm_px >= PALM_MIN_PX, of_size, 0.0))
@@ -67,17 +69,23 @@ def range_of_palm_m(palm_px: FloatArray, camera: CameraModel) -> FloatArray:
     return np.asarray(camera.fy * PALM_LENGTH_M / np.maximum(palm_px, 1.0))
 
 
-def palms_px(hands: Hands) -> tuple[FloatArray, FloatArray]:
-    """Lengths of the palms, each of shape (H,): as seen, and as computed from their width."""
-    points = hands.landmarks_px
-    length = np.linalg.norm(points[:, _MIDDLE_ROOT] - points[:, _WRIST], axis=-1)
-    breadth = np.linalg.norm(points[:, _INDEX_ROOT] - points[:, _PINKY_ROOT], axis=-1)
-    return np.maximum(length, 1.0), breadth / PALM_BREADTH
+def palms_px(hands: Hands, camera: CameraModel) -> tuple[FloatArray, FloatArray]:
+    """Lengths of the palms, each of shape (H,): as seen, and as told by their breadth.
+
+    In pixels of the picture's middle, on an upright cylinder around the camera: there a hand that
+    is held up is as large as it is near over the floor, wherever a lens shows it.
+    """
+    ahead, left, up = camera.rays(hands.landmarks_px[:, _PALM].reshape(-1, 2)).T
+    on_cylinder = np.stack([np.arctan2(left, ahead), up / np.hypot(ahead, left)], axis=-1)
+    points = camera.fy * np.nan_to_num(on_cylinder).reshape(-1, len(_PALM), 2)
+    length, breadth = _palm(points)
+    return np.maximum(length, 1.0), breadth
 
 
-def _palm_px(hands: Hands) -> FloatArray:
-    """Length of the palms, shape (H,); by its breadth where a palm tilts away from the camera."""
-    return np.asarray(np.maximum(*palms_px(hands)))
+def _palm(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The two lengths of `palms_px`, from points of shape (H, 4, 2) in the order of `_PALM`."""
+    length = np.linalg.norm(points[:, 2] - points[:, 0], axis=-1)
+    return length, np.linalg.norm(points[:, 3] - points[:, 1], axis=-1) / PALM_BREADTH
 
 
 def ray_coordinates(

@@ -6,8 +6,8 @@ import numpy as np
 
 from tracker.containers import FloatArray, LocatedScan
 from tracker.geometry import normalize_angle
-from tracker.ranging.beams import median_range
 from tracker.ranging.rays import HandRays
+from tracker.ranging.scan.beams import median_range
 
 
 def range_along_rays(

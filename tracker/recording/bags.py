@@ -11,11 +11,11 @@ from typing import Any
 import yaml
 
 from tracker.errors import RecordingError
-from tracker.recording.mcap_file import McapSource
-from tracker.recording.ros1_file import Ros1Source
+from tracker.recording.formats.mcap_file import McapSource
+from tracker.recording.formats.ros1_file import Ros1Source
+from tracker.recording.formats.sqlite_file import SqliteSource
+from tracker.recording.formats.unpacking import unpacked_file
 from tracker.recording.sources import Row, Source, WrappedSource
-from tracker.recording.sqlite_file import SqliteSource
-from tracker.recording.unpacking import unpacked_file
 from tracker.wording import listing
 
 #: What each suffix, in small letters, is read by.

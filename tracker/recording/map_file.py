@@ -16,8 +16,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from tracker.containers import FloatArray, OccupancyGrid
 from tracker.containers.occupancy_grid import UNKNOWN, CellArray
 from tracker.errors import ConfigError
+from tracker.parameters.yaml_reading import read_yaml
 from tracker.wording import shown
-from tracker.yaml_reading import read_yaml
 
 #: A map of 250 m x 250 m in cells of 5 cm has so many.
 _MAX_CELLS = 25_000_000

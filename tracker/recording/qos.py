@@ -4,9 +4,17 @@ from __future__ import annotations
 
 import yaml
 
+from tracker.config import NODE_NAME
+
 #: Topics that a late subscriber must still get, and how many of their last messages. /tf_static
 #: may come in many pieces; 100 is what tf2's own listener keeps.
-LATCHED = {"/tf_static": 100, "/hand_raised": 1, "/map": 1}
+LATCHED = {
+    "/tf_static": 100,
+    "/map": 1,
+    "/hand_raised": 1,
+    f"/{NODE_NAME}/raised_hands": 1,
+    f"/{NODE_NAME}/waiting_list": 1,
+}
 
 # rmw's numbers: keep last, reliable, transient local or volatile, automatic.
 _KEEP_LAST, _RELIABLE, _TRANSIENT_LOCAL, _VOLATILE, _AUTOMATIC = 1, 1, 1, 2, 1

@@ -157,16 +157,16 @@ class CallKeeper:
         """Update places, and begin or renew the calls of people whose hand is up."""
         by_track = {caller.track_id: caller for caller in self._callers.values()}
         fresh = tracks.unseen_s <= self.config.pose_max_age_s
-        columns = tracks.id.tolist(), tracks.raised.tolist(), fresh.tolist()
-        for row, (track_id, is_up, is_fresh) in enumerate(zip(*columns, strict=True)):
+        columns = tracks.id.tolist(), tracks.raised.tolist(), fresh.tolist(), _places(tracks)
+        for row, (track_id, is_up, is_fresh, place) in enumerate(zip(*columns, strict=True)):
             caller = by_track.get(track_id)
             if caller is None and not is_up:
                 continue
             changes: dict[str, Any] = {}
             if caller is None:
-                caller = _new_caller(tracks, row)
+                caller = _new_caller(tracks, row, place)
             elif is_fresh:  # the others keep their last place
-                changes = _place(tracks, row)
+                changes = place
             if is_up:
                 changes |= self._raised(caller, int(tracks.raised_since_ns[row]), tracks.stamp_ns)
             elif caller.is_up:
@@ -228,7 +228,10 @@ class CallKeeper:
         chosen_id = choose(callers, self._now.selected_id, stamp_ns, self._robot_xy_m, self.config)
         of = {state: [item for item in callers if item.state is state] for state in CallState}
         waiting = in_order(of[CallState.WAITING], self._robot_xy_m, self.config)
-        waiting.sort(key=lambda caller: caller.id != chosen_id)
+        if (
+            self.config.calls_wait
+        ):  # else the selected one may be whose hand is up, not who is next
+            waiting.sort(key=lambda caller: caller.id != chosen_id)
         over = of[CallState.SERVED] + of[CallState.GONE] + of[CallState.IGNORED]
         over.sort(key=lambda caller: (-caller.state_since_ns, caller.id))
         served = of[CallState.BEING_SERVED][::-1]
@@ -246,7 +249,7 @@ _LEADS_TO = {
 }
 
 
-def _new_caller(tracks: Tracks, row: int) -> Caller:
+def _new_caller(tracks: Tracks, row: int, place: dict[str, Any]) -> Caller:
     track_id, since_ns = int(tracks.id[row]), int(tracks.raised_since_ns[row])
     return Caller(
         id=track_id,
@@ -257,18 +260,20 @@ def _new_caller(tracks: Tracks, row: int) -> Caller:
         last_up_ns=tracks.stamp_ns,
         is_up=True,
         track_id=track_id,
-        **_place(tracks, row),
+        **place,
     )
 
 
-def _place(tracks: Tracks, row: int) -> dict[str, Any]:
-    """Where somebody was seen, and when."""
-    x, y = tracks.mean[row, :2].tolist()
-    (xx, xy), (_, yy) = tracks.covariance[row, :2, :2].tolist()
-    seen_ns = tracks.stamp_ns - round(float(tracks.unseen_s[row]) * 1e9)
-    return {
-        "xy_m": (x, y), "covariance_m2": (xx, xy, yy), "seen_ns": seen_ns, "missing_s": 0.0
-    }  # fmt: skip
+def _places(tracks: Tracks) -> list[dict[str, Any]]:
+    """Where each was seen, and when."""
+    seen_ns = tracks.stamp_ns - np.rint(tracks.unseen_s * 1e9).astype(np.int64)
+    xy_m, spread_m2 = tracks.mean[:, :2].tolist(), tracks.covariance[:, [0, 0, 1], [0, 1, 1]]
+    return [
+        {"xy_m": (x, y), "covariance_m2": (xx, xy, yy), "seen_ns": at_ns, "missing_s": 0.0}
+        for (x, y), (xx, xy, yy), at_ns in zip(
+            xy_m, spread_m2.tolist(), seen_ns.tolist(), strict=True
+        )
+    ]
 
 
 def _matrix(caller: Caller) -> list[list[float]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 from tracker.config import Config
 from tracker.containers import Caller, CallState, FloatArray
@@ -40,7 +41,10 @@ def choose(
         if caller.id == chosen_id and _stays(caller, stamp_ns, config):
             return chosen_id
     if not config.calls_wait:
-        waiting = [caller for caller in waiting if caller.is_up]
+        # A hand that is up is selected as if calls ended with it: its last rise is what counts.
+        waiting = [
+            replace(caller, called_ns=caller.raised_since_ns) for caller in waiting if caller.is_up
+        ]
     ranked = in_order(waiting, robot_xy_m, config)
     return ranked[0].id if ranked else None
 
@@ -49,8 +53,7 @@ def in_order(waiting: Iterable[Caller], robot_xy_m: FloatArray, config: Config) 
     """Those who wait, the next one first; who was postponed comes after the others."""
 
     def rank(caller: Caller) -> tuple[int, float, int]:
-        # Without `calls_wait` calls end with the hand, so that its last rise is what counts.
-        since_ns = caller.called_ns if config.calls_wait else caller.raised_since_ns
+        since_ns = caller.called_ns
         by_policy = {
             "first": since_ns,
             "newest": -since_ns,

@@ -15,9 +15,9 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field, ValidationError, model_validator
 
 from tracker.errors import ConfigError, SceneError
+from tracker.parameters.yaml_reading import read_yaml
 from tracker.simulation.interior import Chair, Color, Part, Pose2, Poster, Table, Wall
 from tracker.wording import shown
-from tracker.yaml_reading import read_yaml
 
 #: How long an arm takes from the lap to beside the head; a guess from how people wave to a waiter.
 ARM_MOTION_S = 0.4

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, Hands
-from tracker.simulation.arm import raised_hand_landmarks
-from tracker.simulation.camera_view import is_from_behind, look_of
-from tracker.simulation.guests import draw_place
-from tracker.simulation.look import Look
 from tracker.simulation.motion import People
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.random_rooms.guests import draw_place
+from tracker.simulation.rendering.arm import raised_hand_landmarks
+from tracker.simulation.rendering.camera_view import is_from_behind, look_of
+from tracker.simulation.rendering.look import Look
 from tracker.simulation.scene import Scene
 
 #: Half of a person's silhouette at the height of the chest and head.

@@ -14,12 +14,12 @@ from tracker.errors import SceneError
 from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.messages import CameraInfo, Encodable, Event
 from tracker.recording import RecordingWriter
-from tracker.simulation.camera_view import CameraView, hands_in_view
-from tracker.simulation.depth_view import DepthView, depth_camera
 from tracker.simulation.floor_map import floor_map
 from tracker.simulation.lidar import ScanSimulator
 from tracker.simulation.motion import people_at, planar_transform, robot_pose
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.rendering.camera_view import CameraView, hands_in_view
+from tracker.simulation.rendering.depth_view import DepthView, depth_camera
 from tracker.simulation.scene import Scene
 from tracker.transforms import StampedTransform
 

@@ -11,10 +11,10 @@ from scipy.optimize import linear_sum_assignment
 from tracker.containers import FloatArray, IntArray
 from tracker.containers.measurement_check import are_semidefinite
 from tracker.errors import ShapeError
-from tracker.tracking.association import associate
-from tracker.tracking.gating import Pairs
-from tracker.tracking.motion import predict
+from tracker.tracking.association.association import associate
+from tracker.tracking.association.gating import Pairs
 from tracker.tracking.people import People
+from tracker.tracking.prediction.motion import predict
 from tracker.tracking.settings import Settings
 
 #: Means (N, 4) and covariances (N, 4, 4) of everybody, and seconds: the same, so much later.

@@ -9,22 +9,22 @@ import numpy as np
 
 from tracker.compiling.loops import maker
 from tracker.containers import FloatArray
-from tracker.tracking.admission import plan_rounds
-from tracker.tracking.association import associate
-from tracker.tracking.bias import consider_bias
-from tracker.tracking.claims import Claims
-from tracker.tracking.correction import correct_people
-from tracker.tracking.found import nothing_found, take
-from tracker.tracking.gating import find_pairs
+from tracker.tracking.association.admission import plan_rounds
+from tracker.tracking.association.association import associate
+from tracker.tracking.association.found import nothing_found, take
+from tracker.tracking.association.gating import find_pairs
 from tracker.tracking.instant import Instant
-from tracker.tracking.life_cycle import believe, fade
-from tracker.tracking.modes import merge_modes
-from tracker.tracking.motion import predict
+from tracker.tracking.life_cycle.life_cycle import believe, fade
+from tracker.tracking.life_cycle.renewal import Frame, renew
 from tracker.tracking.people import MISSED, People, with_room
-from tracker.tracking.renewal import Frame, renew
+from tracker.tracking.prediction.modes import merge_modes
+from tracker.tracking.prediction.motion import predict
+from tracker.tracking.sensing.claims import Claims
+from tracker.tracking.sensing.view import visibility
 from tracker.tracking.settings import Settings
 from tracker.tracking.trace import Trace, note_round
-from tracker.tracking.view import visibility
+from tracker.tracking.update.bias import consider_bias
+from tracker.tracking.update.correction import correct_people
 
 #: Of a raised hand, the chance that one counts whose owner had it down in the last frame (guess).
 RAISES_AGAIN = 0.5

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tracker.compiling.machine import LOG, Machine
-from tracker.tracking.claims import Claims
 from tracker.tracking.frame import track_frame
 from tracker.tracking.instant import Instant
+from tracker.tracking.life_cycle.renewal import Frame
 from tracker.tracking.people import People
-from tracker.tracking.renewal import Frame
+from tracker.tracking.sensing.claims import Claims
 from tracker.tracking.settings import RECORD
 from tracker.tracking.trace import Trace
 

@@ -11,23 +11,23 @@ from tracker.compiling.machine import Machine
 from tracker.config import Config
 from tracker.containers import FloatArray, Measurements, Tracks, View, WaitingList, check_stamp
 from tracker.containers.arrays import sealed
-from tracker.containers.multilateration import with_positions
 from tracker.errors import ShapeError
 from tracker.service.call_keeper import CallKeeper
-from tracker.tracking.claims import Claims, claims_of
 from tracker.tracking.doors import Associator, MotionModel, association_by, prediction_by
 from tracker.tracking.frame import interpreted, make_frame, track_frame
 from tracker.tracking.instant import Instant
+from tracker.tracking.life_cycle.renewal import Frame
 from tracker.tracking.machine_frame import machine
-from tracker.tracking.modes import merge_modes
-from tracker.tracking.motion import modes_of
 from tracker.tracking.people import DETECTED, ID, MISSED, RAISED, room_for, with_room
+from tracker.tracking.prediction.modes import merge_modes
+from tracker.tracking.prediction.motion import modes_of
 from tracker.tracking.reconfiguration import under
-from tracker.tracking.renewal import Frame
 from tracker.tracking.result import customers_of, tracks_of
+from tracker.tracking.sensing.claims import Claims, claims_of
+from tracker.tracking.sensing.multilateration import with_positions
+from tracker.tracking.sensing.view import view_numbers
 from tracker.tracking.settings import record_of, settings_of
 from tracker.tracking.trace import NO_TRACE, Trace, Watch, Watched
-from tracker.tracking.view import view_numbers
 
 NO_LIKENESS = sealed(np.zeros((0, 0)))
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.config import Config
-from tracker.tracking.motion import modes_of
-from tracker.tracking.renewal import Frame
+from tracker.tracking.life_cycle.renewal import Frame
+from tracker.tracking.prediction.motion import modes_of
 
 
 def under(frame: Frame, config: Config) -> Frame:

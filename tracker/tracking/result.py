@@ -7,8 +7,8 @@ import numpy as np
 from tracker.containers import IntArray, Tracks
 from tracker.containers.arrays import COUNTS, constant, sealed, trusted
 from tracker.tracking import people as field
-from tracker.tracking.bias import BIAS
-from tracker.tracking.renewal import Frame
+from tracker.tracking.life_cycle.renewal import Frame
+from tracker.tracking.update.bias import BIAS
 
 
 def customers_of(frame: Frame) -> IntArray | None:

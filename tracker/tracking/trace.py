@@ -11,9 +11,9 @@ import numpy as np
 from tracker.compiling.loops import loop
 from tracker.config import Config
 from tracker.containers import FloatArray, IntArray
-from tracker.tracking.claims import Claims
-from tracker.tracking.gating import Pairs
+from tracker.tracking.association.gating import Pairs
 from tracker.tracking.people import EXISTENCE, People
+from tracker.tracking.sensing.claims import Claims
 
 
 class Trace(NamedTuple):

@@ -16,8 +16,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from nodes.qos import PROFILES, Profile
-from nodes.topics import OUTPUT_TYPES, Output
+from nodes.shared.qos import PROFILES, Profile
+from nodes.shared.topics import OUTPUT_TYPES, Output
 from tracker.messages.types import build, deserialize, serialize
 
 ROOT = Path(__file__).parents[3]

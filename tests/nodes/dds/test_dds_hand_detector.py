@@ -8,8 +8,8 @@ import pytest
 
 pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
 
-from nodes.qos import PROFILES
-from nodes.topics import INPUT_TOPICS, Input, Output
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import INPUT_TOPICS, Input, Output
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage, Scan
@@ -249,6 +249,28 @@ def test_commands_are_followed_and_answered(ear, start_node, play, make_node):
             == "being_served"
         )
     )
+    player.kill()
+
+
+def test_a_node_that_was_killed_goes_on_with_its_list(ear, start_node, play, make_node, tmp_path):
+    kept = "-p", f"waiting_list_file:={tmp_path / 'calls.json'}"
+    node = start_node(*kept)
+    commands = make_node("waiter").publisher("/hand_detector/command", STRING)
+    player = play("--start-offset", 1)
+    ear.until(lambda: any(item.detections for item in ear.messages(Output.WAITING_LIST)))
+    ear.until(lambda: commands.subscribers)
+    commands.publish(serialize(build(STRING, data="serve 1")).cdr)
+    ear.until(lambda: ear.heard[Output.ANSWERS])
+    ear.until(lambda: "being_served" in (tmp_path / "calls.json").read_text(encoding="utf-8"))
+    node.kill()  # as when the power fails
+    player.kill()
+    node.wait()
+    ear.heard.clear()
+    start_node(*kept)
+    player = play("--start-offset", 9)
+    ear.until(lambda: any(item.detections for item in ear.messages(Output.WAITING_LIST)))
+    (anna,) = ear.messages(Output.WAITING_LIST)[-1].detections
+    assert (anna.id, anna.results[0].hypothesis.class_id) == ("1", "being_served")
     player.kill()
 
 

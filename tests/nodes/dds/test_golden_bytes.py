@@ -12,7 +12,7 @@ pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
 
 from cyclonedds.idl import make_idl_struct, types
 
-from nodes.diagnostics import Status, encode_statuses
+from nodes.shared.diagnostics import Status, encode_statuses
 from tracker.camera import CameraModel
 from tracker.containers import CameraImage, Pose, Scan, Tracks
 from tracker.geometry import RigidTransform
@@ -139,12 +139,13 @@ def a_track():
     none = Tracks.none(STAMP_NS)
     values = {
         "id": np.array([7]),
-        "mean": np.array([[1.5, -2.0, 0.0, 0.0]]),
+        "mean": np.array([[1.5, -2.0, 0.5, -0.25]]),
         "covariance": covariance[None],
         "existence": np.array([0.75]),
         "raised": np.array([True]),
+        "raised_since_ns": np.array([STAMP_NS - 1_500_000_000]),
         "confirmed": np.array([True]),
-        "age_s": np.array([0.0]),
+        "age_s": np.array([2.5]),
     }
     return type(none)(
         **{
@@ -162,17 +163,23 @@ def fill(empty):
 
 
 def detection():
-    covariance = [0.0] * 36
-    covariance[0], covariance[1], covariance[6], covariance[7] = 0.04, 0.005, 0.005, 0.01
+    place, velocity = [0.0] * 36, [0.0] * 36
+    place[0], place[1], place[6], place[7] = 0.04, 0.005, 0.005, 0.01
+    place[14], place[21], place[28], place[35] = 0.05**2, 0.2**2, 0.2**2, np.pi**2 / 3
+    velocity[0] = velocity[7] = 1.0
     floor = {"position": xyz(1.5, -2.0, 0.0), "orientation": UPRIGHT}
+    speed = {"position": xyz(0.5, -0.25, 0.0), "orientation": UPRIGHT}
     body = {"position": xyz(1.5, -2.0, 0.85), "orientation": UPRIGHT}
+    words = ["hand_raised", "age_s/2.500", "raised_since/1699999998.750000000"]
+    said = [(word, floor, place) for word in words] + [("velocity", speed, velocity)]
     return {
         "header": HEADER,
         "results": [
             {
-                "hypothesis": {"class_id": "hand_raised", "score": 0.75},
-                "pose": {"pose": floor, "covariance": covariance},
+                "hypothesis": {"class_id": word, "score": 0.75},
+                "pose": {"pose": pose, "covariance": covariance},
             }
+            for word, pose, covariance in said
         ],
         "bbox": {"center": body, "size": xyz(0.5, 0.5, 1.7)},
         "id": "7",

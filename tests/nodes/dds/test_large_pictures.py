@@ -8,8 +8,8 @@ import pytest
 pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
 
 from nodes.dds.links import LinkWatch
-from nodes.qos import PROFILES
-from nodes.topics import Input
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import Input
 from tracker.messages.types import IMAGE
 
 pytestmark = pytest.mark.slow

@@ -6,8 +6,8 @@ from nodes.dds import links
 from nodes.dds.links import LinkWatch
 from nodes.dds.profiles import DEFAULT, GRAPH
 from nodes.dds.sockets import SocketLoad
-from nodes.qos import PROFILES
-from nodes.topics import Input
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import Input
 from tracker.messages import encode
 from tracker.messages.types import BOOL, deserialize
 

@@ -22,8 +22,8 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
 from nodes.dds.profiles import DEFAULT, GRAPH
-from nodes.qos import PROFILES
-from nodes.topics import Input
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import Input
 from tracker.containers import CameraImage
 from tracker.errors import ConfigError
 from tracker.messages import encode

@@ -7,13 +7,13 @@ import pytest
 
 pytest.importorskip("cyclonedds", reason="the extra dds is not installed")
 
-from nodes import arrival
-from nodes.echo import NODE_NAME as ECHOER
-from nodes.echo import echo
-from nodes.play import NODE_NAME as PLAYER
-from nodes.play import play
-from nodes.qos import PROFILES
-from nodes.topics import Input
+from nodes.dds import arrival
+from nodes.dds.echo import NODE_NAME as ECHOER
+from nodes.dds.echo import echo
+from nodes.dds.play import NODE_NAME as PLAYER
+from nodes.dds.play import play
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import Input
 from tracker.camera import CameraModel
 from tracker.containers import CameraImage, Scan
 from tracker.errors import ConfigError, RecordingError

@@ -15,8 +15,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from nodes.qos import PROFILES
-from nodes.topics import OUTPUT_TYPES, Output
+from nodes.shared.qos import PROFILES
+from nodes.shared.topics import OUTPUT_TYPES, Output
 from tracker.messages.types import deserialize
 
 ROOT = Path(__file__).parents[3]
@@ -38,7 +38,7 @@ class Ear:
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
 
-        from nodes.ros_wiring import _CLASSES, _qos
+        from nodes.ros.wiring import _CLASSES, _qos
 
         rclpy.init()
         self.node = rclpy.create_node("ear")

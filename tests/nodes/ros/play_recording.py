@@ -14,14 +14,15 @@ import rclpy
 from mcap.reader import make_reader
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-SENSORS = ("/image_raw", "/scan", "/camera_info")
+SENSORS = ("/image_raw", "/image_raw/compressed", "/scan", "/camera_info")
+LATCHED = ("/tf_static", "/map")
 
 
 def publisher_of(node, topic, type_name):
     package, _, name = type_name.split("/")
     reliability = ReliabilityPolicy.BEST_EFFORT if topic in SENSORS else ReliabilityPolicy.RELIABLE
     durability = DurabilityPolicy.VOLATILE
-    if topic == "/tf_static":
+    if topic in LATCHED:
         durability = DurabilityPolicy.TRANSIENT_LOCAL
     qos = QoSProfile(depth=100, reliability=reliability, durability=durability)
     return node.create_publisher(

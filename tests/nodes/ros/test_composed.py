@@ -6,7 +6,7 @@ pytest.importorskip("rclpy", reason="rclpy cannot be imported: no ROS 2 is sourc
 
 from pathlib import Path
 
-from nodes.topics import Output
+from nodes.shared.topics import Output
 
 pytestmark = [pytest.mark.slow, pytest.mark.model]
 
@@ -19,8 +19,8 @@ def test_it_takes_the_options_of_any_node_and_takes_a_hand_back_after_ctrl_c(
     from diagnostic_msgs.msg import DiagnosticArray
     from std_msgs.msg import Bool
 
-    from nodes.qos import PROFILES
-    from nodes.ros_wiring import _qos
+    from nodes.ros.wiring import _qos
+    from nodes.shared.qos import PROFILES
 
     raised, reports = [], []
     qos = _qos(PROFILES[Output.HAND_RAISED])

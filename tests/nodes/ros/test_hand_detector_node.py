@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="rclpy cannot be imported: no ROS 2 is sourced here")
 
-from nodes.topics import Output
+from nodes.shared.topics import Output
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import CameraImage
@@ -346,6 +346,62 @@ def test_the_example_waiter_serves_who_calls_and_who_is_unknown_is_refused(
     raised = [len(item.detections) > 0 for item in ear.messages(Output.RAISED_HANDS)]
     assert raised == [item.data for item in ear.messages(Output.HAND_RAISED)][: len(raised)]
     player.kill()
+
+
+@pytest.mark.parametrize("module", ["nodes.hand_detector", "nodes.dds_hand_detector"])
+@pytest.mark.parametrize(("scene", "drive_s"), [("restaurant", 18.0), ("bistro", 11.0)])
+def test_the_example_waiter_serves_everybody_once_in_order(
+    ear, start_node, run, scene_recording, guests_of, module, scene, drive_s
+):
+    service_s = 4.0
+    played, path = scene_recording(scene)
+    guests = guests_of(played)
+    order = guests.order(drive_s + service_s)
+    start_node("-p", "image_transport:=compressed", module=module)
+    waiter = run(
+        ROOT / "examples/waiter.py", "--pretend-drive-s", drive_s, "--service-s", service_s,
+        "--count", len(order), name="waiter",
+    )  # fmt: skip
+    run(Path(__file__).with_name("play_recording.py"), path, name="player")
+    most_s = played.duration_s + len(order) * (drive_s + service_s) + 60.0
+    assert waiter.wait(most_s) == 0, waiter.log()
+    served = re.search(r"served: ([\d, ]+)\n", waiter.log()).group(1).split(", ")
+    places = {
+        person.id: _xy(person.results[0])
+        for person in ear.messages(Output.WAITING_LIST)[-1].detections
+    }
+    assert guests.known_as(served, places) == order
+
+
+@pytest.mark.parametrize("module", ["nodes.hand_detector", "nodes.dds_hand_detector"])
+def test_ros_reads_in_tracks_since_when_a_hand_is_up_and_how_fast_its_owner_walks(
+    ear, start_node, play, module
+):
+    from rclpy.serialization import deserialize_message
+    from vision_msgs.msg import Detection3DArray
+
+    start_node(module=module)
+    player = play("--loop", 2)
+
+    def last(output):
+        heard = ear.heard[output]
+        return (
+            deserialize_message(bytes(heard[-1][1]), Detection3DArray).detections if heard else []
+        )
+
+    ear.until(lambda: last(Output.RAISED_HANDS) and last(Output.TRACKS))
+    player.kill()
+    (person,), (raised,) = last(Output.TRACKS), last(Output.RAISED_HANDS)
+    words = {result.hypothesis.class_id.partition("/")[0]: result for result in person.results}
+    since = words["raised_since"].hypothesis.class_id.partition("/")[2]
+    assert since == f"{raised.header.stamp.sec}.{raised.header.stamp.nanosec:09d}"
+    assert float(words["age_s"].hypothesis.class_id.partition("/")[2]) > 0.0
+    assert np.hypot(*_xy(words["velocity"])) < 2.0
+    assert person.results[0].pose.covariance[35] == pytest.approx(np.pi**2 / 3)
+
+
+def _xy(result):
+    return result.pose.pose.position.x, result.pose.pose.position.y
 
 
 def test_a_simulated_clock_that_jumps_back_resets(ear, start_node):

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="rclpy cannot be imported: no ROS 2 is sourced here")
 
-from nodes.topics import Output
+from nodes.shared.topics import Output
 
 pytestmark = [pytest.mark.slow, pytest.mark.model]
 

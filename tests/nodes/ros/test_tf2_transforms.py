@@ -5,7 +5,7 @@ pytest.importorskip("rclpy", reason="rclpy cannot be imported: no ROS 2 is sourc
 
 from tf2_ros import Buffer
 
-from nodes.tf2_transforms import Tf2Transforms
+from nodes.ros.tf2_transforms import Tf2Transforms
 from tracker.errors import TransformError
 from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.transforms import StampedTransform, TransformBuffer

@@ -185,6 +185,12 @@ def test_an_unknown_scene_is_a_usage_error_that_names_those_there_are(run):
     assert "restaurant" in error
 
 
+def test_a_simulation_with_a_camera_s_name_is_a_usage_error_that_names_the_option(run):
+    status, _, error = run("live", "--simulated", "bistro")
+    assert status == 2
+    assert "--scene bistro" in complaint(error)
+
+
 def test_a_recording_is_not_overwritten_without_being_told(run, tmp_path):
     (tmp_path / "there.mcap").write_bytes(b"precious")
     status, _, error = run("simulate", "lonely", "--out", "there.mcap")

@@ -35,7 +35,7 @@ def copied(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("source", ["tracking/view.py", "containers/sensor_kind.py"])
+@pytest.mark.parametrize("source", ["tracking/sensing/view.py", "containers/sensor_kind.py"])
 def test_a_source_that_changes_names_another_folder(name, copied, source):
     before = name()
     with (copied / source).open("a") as file:

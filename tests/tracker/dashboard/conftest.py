@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from tracker import CameraImage, Config, Hands, Pipeline
+from tracker.containers import OccupancyGrid
 from tracker.dashboard import Dashboard
+from tracker.geometry import RigidTransform
 from tracker.live.steering import PipelineSteering
+from tracker.transforms import StampedTransform
 
 START_NS, PERIOD_NS = 10**12, 100_000_000
 
@@ -32,6 +35,15 @@ class Watched:
         steering = PipelineSteering(self.pipeline) if can_steer else None
         self.dashboard = Dashboard(Config(), "test <camera>", steering)
         self.number = 0
+
+    def mount(self):
+        """The camera stands in the map, which has a wall 1.5 m to the right."""
+        standing = RigidTransform((0.5, 0.0, 1.2))
+        mounted = StampedTransform(0, "map", "camera_link", standing, is_static=True)
+        self.pipeline.add_transform(mounted)
+        cells = np.zeros((20, 20), np.int8)
+        cells[0] = 100
+        self.pipeline.set_map(OccupancyGrid(0, "map", 0.1, (0.0, -1.5, 0.0), cells))
 
     def run(self, frames):
         for _ in range(frames):

@@ -1,10 +1,11 @@
 import json
+from dataclasses import replace
 
 import cv2
 import numpy as np
 import pytest
 
-from tracker import Config
+from tracker import CameraImage, Config
 from tracker.dashboard.parameters import changed, live_parameters
 from tracker.errors import ConfigError
 
@@ -23,6 +24,35 @@ def test_a_frame_is_json_and_a_jpeg(watched):
     assert {item["kind"] for item in state["timeline"]} == {"up", "waiting"}
     picture = cv2.imdecode(np.frombuffer(shown.jpeg, np.uint8), cv2.IMREAD_COLOR)
     assert picture.shape == (480, 640, 3)
+
+
+def test_the_map_has_a_number_and_a_place_and_its_picture_is_asked_for(watched):
+    watched.run(1)
+    assert "map" not in watched.dashboard.show().state
+    assert watched.dashboard.map_png() is None
+    watched.mount()
+    watched.run(2)
+    first = watched.dashboard.show().state["map"]
+    assert first == {"number": 1, "origin": [0.0, -1.5, 0.0], "pixel_m": pytest.approx(0.1)}
+    assert watched.dashboard.map_png()[:4] == b"\x89PNG"
+    watched.mount()
+    watched.run(1)
+    assert watched.dashboard.show().state["map"]["number"] == 2
+
+
+@pytest.mark.parametrize(("std_m", "is_fan"), [(0.3, False), (2.0, True)])
+def test_who_is_known_by_direction_alone_is_a_fan(watched, std_m, is_fan):
+    watched.mount()
+    watched.run(8)
+    image = CameraImage(10**12 + 800_000_000, "", np.zeros((480, 640, 3), np.uint8))
+    result = watched.pipeline.process(image)
+    spread = np.diag([std_m**2, 0.01, 1.0, 1.0])[None]
+    ahead = replace(result.tracks, mean=np.array([[3.5, 0.0, 0.0, 0.0]]), covariance=spread)
+    watched.dashboard.watch(image, replace(result, tracks=ahead), 0.02)
+    (person,) = watched.dashboard.show().state["people"]
+    half_rad = 2 * np.arctan2(0.1, 3.0)  # the camera stands at x = .5 m
+    expected = pytest.approx([-half_rad, half_rad], abs=1e-3) if is_fan else None
+    assert person.get("fan") == expected
 
 
 def test_a_frame_is_drawn_once_for_all_browsers(watched):

@@ -1,9 +1,12 @@
 """The page in a real browser."""
 
+import re
 import shutil
 import threading
 import time
 
+import cv2
+import numpy as np
 import pytest
 
 pytest.importorskip("starlette", reason="the extra live is not installed")
@@ -33,7 +36,8 @@ def browser():
 
 @pytest.fixture
 def url(watched):
-    """The page of a pipeline that goes on in a thread."""
+    """The page of a pipeline that goes on in a thread, in a room with a map."""
+    watched.mount()
     is_over = threading.Event()
 
     def go_on():
@@ -54,7 +58,8 @@ def page(browser, url, request):
     width, height, scheme = request.param
     context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme)
     made = context.new_page()
-    made.complaints = []
+    made.complaints, made.fetched = [], []
+    made.on("response", lambda answer: made.fetched.append((answer.url, answer.status)))
     made.on("console", lambda said: made.complaints.append(said.text))
     made.on("pageerror", lambda error: made.complaints.append(str(error)))
     made.goto(url)
@@ -76,6 +81,22 @@ def test_the_page_shows_who_waits_and_nothing_overflows(page):
         pytest.fail("no picture was shown")
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
     assert page.locator("#timeline rect").count() >= 2
+
+
+def test_the_map_is_fetched_once_and_drawn(page):
+    card = page.evaluate("getComputedStyle(document.querySelector('section')).backgroundColor")
+    card_bgr = np.array([int(part) for part in re.findall(r"\d+", card)[:3]][::-1])
+    wall_bgr = 0.55 * np.array([140, 130, 122]) + 0.45 * card_bgr
+    for _ in range(100):
+        png = np.frombuffer(page.locator("#map").screenshot(), np.uint8)
+        picture = cv2.imdecode(png, cv2.IMREAD_COLOR)
+        shown = np.abs(picture - wall_bgr).max(axis=-1) < 3.0
+        if shown.sum() > 20:
+            break
+        time.sleep(0.1)
+    else:
+        pytest.fail("no wall of the map was drawn")
+    assert [status for url, status in page.fetched if "/map.png" in url] == [200]
 
 
 def test_a_customer_is_served_by_the_keyboard_alone(page):

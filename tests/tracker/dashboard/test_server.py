@@ -94,6 +94,15 @@ def test_a_browser_that_does_not_ask_gets_nothing_and_holds_nobody_up(server, wa
         assert state["frame"] == watched.dashboard.number
 
 
+def test_the_map_is_there_once_one_has_come(server, watched):
+    with pytest.raises(HTTPError, match="404"):
+        urllib.request.urlopen(f"{server.url}map.png")
+    watched.mount()
+    watched.run(1)
+    answer = urllib.request.urlopen(f"{server.url}map.png?number=1")
+    assert (answer.headers["Content-Type"], answer.read(4)) == ("image/png", b"\x89PNG")
+
+
 def test_another_site_cannot_open_the_socket(server):
     with pytest.raises((InvalidStatus, ConnectionClosed)):
         with socket_of(server.url, origin="http://evil.example") as socket:
@@ -112,6 +121,8 @@ def test_beyond_the_loopback_a_token_is_needed(watched):
         assert wait_for(url).status == 200
         with pytest.raises(HTTPError, match="403"):
             urllib.request.urlopen(url.partition("?")[0])
+        with pytest.raises(HTTPError, match="403"):
+            urllib.request.urlopen(url.partition("?")[0] + "map.png")
         with pytest.raises((InvalidStatus, ConnectionClosed)):
             with socket_of(url.partition("?")[0]) as socket:
                 socket.recv(5)

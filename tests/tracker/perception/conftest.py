@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tracker.containers import Hands
-from tracker.perception.bodies import Bodies, Joint
+from tracker.perception.bodies.bodies import Bodies, Joint
 
 STANDING = {
     "nose": (200, 60), "left_eye": (205, 55), "right_eye": (195, 55),

@@ -6,9 +6,9 @@ import pytest
 from tracker.config import Config
 from tracker.containers import CameraImage, Hands, PerceptionWork, Refusal
 from tracker.perception import HandDetector
-from tracker.perception.bodies import Bodies
+from tracker.perception.bodies.bodies import Bodies
+from tracker.perception.bodies.people_watch import PeopleWatch
 from tracker.perception.call_finder import CallFinder
-from tracker.perception.people_watch import PeopleWatch
 
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
 PHONING = {"right_elbow": (165, 120), "right_wrist": (183, 78)}

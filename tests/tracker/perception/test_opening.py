@@ -9,7 +9,7 @@ from tracker.containers import CameraImage
 from tracker.errors import ConfigError, ModelFileError
 from tracker.perception import HandDetector, HandFinder, open_detector
 from tracker.perception.call_finder import CallFinder
-from tracker.perception.mediapipe_hands import MediapipeHands
+from tracker.perception.hands.mediapipe_hands import MediapipeHands
 from tracker.perception.models import ModelStore
 from tracker.perception.pose_hands import PoseHands
 from tracker.pipeline import Pipeline

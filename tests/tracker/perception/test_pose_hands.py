@@ -4,7 +4,7 @@ import pytest
 from tracker.config import Config
 from tracker.containers import CameraImage
 from tracker.perception import HandDetector
-from tracker.perception.bodies import Bodies
+from tracker.perception.bodies.bodies import Bodies
 from tracker.perception.pose_hands import PoseHands, draw_hands, judge_arms
 
 SIZE = (640, 480)

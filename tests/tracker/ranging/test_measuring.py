@@ -106,7 +106,8 @@ def test_of_a_body_at_the_lens_the_bearing_is_as_good_as_unknown(cast, legs):
 
 def test_without_a_scan_a_hand_is_as_near_as_it_is_large():
     found = measure_people(hands_toward((2.0, 0.5)), CAMERA, AT_ORIGIN, None, Config())
-    assert found.values[0] == pytest.approx([np.arctan2(0.5, 2.0), 2.0], abs=0.02)
+    expected = np.arctan2(0.5, 2.0), np.hypot(2.0, 0.5)
+    assert found.values[0] == pytest.approx(expected, abs=0.02)
     assert 0.3 < np.sqrt(found.covariance[0, 1, 1]) < 0.5
 
 
@@ -260,7 +261,7 @@ def test_a_torso_s_bearing_is_surer_than_a_wrist_s():
     # Two parts: the offset at the hand's range, and the noise of the pixel.
     length = hands.length_px[0]
     pixel = np.hypot(0.3 + 0.005 * length, 1.0 + 0.02 * length) / 460.0
-    expected = np.hypot(np.arctan2(config.torso_offset_std_m, 2.0), pixel)
+    expected = np.hypot(np.arctan2(config.torso_offset_std_m, np.hypot(2.0, 0.3)), pixel)
     assert np.sqrt(torso.covariance[0, 0, 0]) == pytest.approx(expected, rel=1e-2)
     assert torso.covariance[0, 0, 0] < wrist.covariance[0, 0, 0] / 4
 

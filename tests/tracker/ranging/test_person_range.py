@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from tracker.camera import CameraModel
 from tracker.containers import Hands
-from tracker.ranging.person_range import owner_side
+from tracker.ranging.person_range import owner_side, palms_px, range_of_palm_m
 
 
 def hand_with_thumb_at(thumb_px):
@@ -27,3 +28,19 @@ def hand_with_thumb_at(thumb_px):
 def test_the_owner_stands_where_the_thumb_points_however_the_camera_is_rolled(roll_deg, thumb_px):
     hand = hand_with_thumb_at(thumb_px)
     assert owner_side(hand, np.radians(roll_deg)) == pytest.approx([1.0])  # to the left
+
+
+@pytest.mark.parametrize("azimuth_deg", [0.0, 20.0, 40.0])
+@pytest.mark.parametrize("up_m", [0.0, 0.8])
+@pytest.mark.parametrize("lens", ["none", "fisheye"])
+def test_a_palm_is_as_near_as_it_is_large_wherever_a_lens_shows_it(azimuth_deg, up_m, lens):
+    distortion = () if lens == "none" else (-0.12, 0.01, 0.0, 0.0)
+    camera = CameraModel(400.0, 400.0, 640.0, 360.0, distortion, lens)
+    azimuth = np.radians(azimuth_deg)
+    ahead = 2.0 * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+    points = np.zeros((1, 21, 2))
+    for landmark, height_m in ((0, up_m), (9, up_m + 0.095)):
+        points[0, landmark] = camera.pixels(ahead + np.array([0.0, 0.0, height_m]))[0]
+    one = np.ones(1)
+    length_px, _ = palms_px(Hands(points, one, one, one.astype(bool), one), camera)
+    assert range_of_palm_m(length_px, camera) == pytest.approx([2.0], rel=0.02)

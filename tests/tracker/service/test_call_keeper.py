@@ -57,6 +57,20 @@ def test_the_policy_orders_those_who_wait(make_room, selection, order):
     assert [caller.id for caller in room.keeper.now.waiting] == order
 
 
+@pytest.mark.parametrize("calls_wait", [True, False])
+def test_a_hand_that_is_up_does_not_jump_the_queue(make_room, calls_wait):
+    people = {1: ANNA, 2: BERT, 3: (4.0, -1.0)}
+    room = make_room(calls_wait=calls_wait)
+    for track_id in people:
+        room.run(1, people, up=[track_id])
+    room.say("serve 1")
+    room.run(5, people)
+    room.say("served 1")
+    for up in ([3], [2, 3]):  # 2 is next, even after raising the hand once more and later
+        now = room.run(1, people, up=up)
+        assert [caller.id for caller in now.waiting] == [2, 3]
+
+
 def test_everybody_is_served_once_in_order(room):
     people = {1: ANNA, 2: BERT}
     room.run(1, people, up=[1])

@@ -3,9 +3,9 @@ import pytest
 
 from tracker.geometry import RigidTransform
 from tracker.simulation import scene_from_mapping
-from tracker.simulation.camera_view import hands_in_view
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.rendering.camera_view import hands_in_view
 from tracker.simulation.shown_hands import show_hands
 
 UP = [{"from_s": 0.5, "until_s": 1.5}]

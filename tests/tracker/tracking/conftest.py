@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from tracker import PersonTracker
-from tracker.tracking.claims import claims_of
-from tracker.tracking.correction import correct
-from tracker.tracking.gating import find_pairs
+from tracker.tracking.association.gating import find_pairs
 from tracker.tracking.machine_frame import compile_tracker, machine
-from tracker.tracking.modes import merge_modes
 from tracker.tracking.people import EXISTENCE, HAND, ID, RAISED_SINCE_NS, TAG, room_for
 from tracker.tracking.person_tracker import NO_LIKENESS
+from tracker.tracking.prediction.modes import merge_modes
+from tracker.tracking.sensing.claims import claims_of
 from tracker.tracking.settings import settings_of
+from tracker.tracking.update.correction import correct
 
 
 def _people(mean, covariance, weight=None, *, ids=None, window=5):

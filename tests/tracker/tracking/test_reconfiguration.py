@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tracker import Config, Measurements
+from tracker.tracking.life_cycle.renewal import Frame
 from tracker.tracking.reconfiguration import under
-from tracker.tracking.renewal import Frame
 
 
 @pytest.fixture

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tracker import Measurements
+from tracker.tracking.life_cycle.renewal import Frame
 from tracker.tracking.people import AGE_S, RAISED, UNSEEN_S
-from tracker.tracking.renewal import Frame
 from tracker.tracking.result import customers_of, tracks_of
 
 

@@ -7,6 +7,7 @@ class Room {
   constructor(canvas) {
     this.canvas = canvas;
     this.bounds = null; // xmin, xmax, ymin, ymax in the map; follows what there is to see, slowly
+    this.plan = { number: 0, picture: null }; // the map of the room, fetched once for each
   }
 
   draw(state) {
@@ -25,6 +26,7 @@ class Room {
       height / 2 - (x - (xmin + xmax) / 2) * scale,
     ];
     this.grid(pen, at, width, height);
+    if (state.map) this.map(pen, at, state.map, scale, dense);
     pen.fillStyle = color("soft");
     for (const [x, y] of state.scan) {
       const [left, top] = at(x, y);
@@ -34,11 +36,29 @@ class Room {
     for (const caller of state.callers) {
       if (!caller.in_sight && ["waiting", "being_served"].includes(caller.state)) this.lost(pen, at, caller);
     }
-    for (const person of state.people) this.person(pen, at, person, scale, state.callers);
+    for (const person of state.people) this.person(pen, at, person, scale, state.callers, state.robot);
+  }
+
+  // Row and column of the picture run along the map's own axes, which may be turned.
+  map(pen, at, { number, origin: [x, y, yaw], pixel_m }, scale, dense) {
+    if (this.plan.number !== number) {
+      const token = new URLSearchParams(location.search).get("token");
+      this.plan = { number, picture: new Image() };
+      this.plan.picture.src = `map.png?number=${number}${token ? `&token=${encodeURIComponent(token)}` : ""}`;
+    }
+    const picture = this.plan.picture;
+    if (!picture.complete || !picture.naturalWidth) return;
+    const [left, top] = at(x, y), along = pixel_m * scale * Math.cos(yaw), across = pixel_m * scale * Math.sin(yaw);
+    pen.save();
+    pen.transform(-across, -along, -along, across, left, top);
+    pen.imageSmoothingEnabled = pixel_m * scale * dense < 1;
+    pen.globalAlpha = .55;
+    pen.drawImage(picture, 0, 0);
+    pen.restore();
   }
 
   follow(state) {
-    const places = [...state.people, ...state.callers.filter((one) => ["waiting", "being_served"].includes(one.state))];
+    const places = [...state.people.filter((one) => !one.fan), ...state.callers.filter((one) => ["waiting", "being_served"].includes(one.state))];
     const xs = places.map((one) => one.x), ys = places.map((one) => one.y);
     const [x, y] = state.robot || [0, 0];
     for (const [px, py] of state.scan) if (Math.hypot(px - x, py - y) < 6) { xs.push(px); ys.push(py); }
@@ -74,11 +94,14 @@ class Room {
     pen.restore();
   }
 
-  person(pen, at, person, scale, callers) {
+  person(pen, at, person, scale, callers, robot) {
     const shade = color(person.selected ? "selected" : person.up ? "up" : "down");
-    const [left, top] = at(person.x, person.y);
+    const known = callers.find((one) => one.track === person.id);
+    const name = `#${known ? known.id : person.id}${person.up ? " up" : ""}`;
     pen.strokeStyle = pen.fillStyle = shade;
     pen.lineWidth = 2;
+    if (person.fan && robot) return this.fan(pen, at, person.fan, robot, scale, name, shade);
+    const [left, top] = at(person.x, person.y);
     pen.globalAlpha = .5;
     pen.beginPath();
     person.trail.forEach(([x, y], i) => pen[i ? "lineTo" : "moveTo"](...at(x, y)));
@@ -93,8 +116,21 @@ class Room {
     pen.beginPath();
     pen.arc(left, top, 6, 0, 2 * Math.PI);
     pen.fill();
-    const known = callers.find((one) => one.track === person.id);
-    this.label(pen, left, top, `#${known ? known.id : person.id}${person.up ? " up" : ""}`, shade);
+    this.label(pen, left, top, name, shade);
+  }
+
+  // A direction without a distance.
+  fan(pen, at, [right, left], [x, y], scale, name, shade) {
+    const [across, top] = at(x, y), reach = 2 * scale, middle = (right + left) / 2;
+    pen.beginPath();
+    pen.moveTo(across, top);
+    pen.arc(across, top, reach, -left - Math.PI / 2, -right - Math.PI / 2);
+    pen.closePath();
+    pen.globalAlpha = .25;
+    pen.fill();
+    pen.globalAlpha = 1;
+    pen.stroke();
+    this.label(pen, across - reach * Math.sin(middle), top - reach * Math.cos(middle), name, shade);
   }
 
   lost(pen, at, caller) {

@@ -17,9 +17,9 @@ from tracker.evaluation.detection.scenes import HAND_UP_S
 from tracker.perception import HandDetector
 from tracker.pipeline import Pipeline
 from tracker.simulation import Scene
-from tracker.simulation.camera_view import CameraView, raised_hand_pixels
 from tracker.simulation.motion import People, people_at
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.rendering.camera_view import CameraView, raised_hand_pixels
 from tracker.simulation.scene import ARM_MOTION_S
 from tracker.simulation.stream import map_from_camera
 

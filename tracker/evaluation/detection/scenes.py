@@ -14,10 +14,10 @@ import numpy as np
 
 from tracker.errors import SceneError
 from tracker.simulation import Scene
-from tracker.simulation.camera_view import hands_in_view
 from tracker.simulation.interior import Wall
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.rendering.camera_view import hands_in_view
 from tracker.simulation.scene import Activity, Camera, Person, PersonLook, Raise, WayPoint
 from tracker.simulation.stream import map_from_camera
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import FloatArray
-from tracker.tracking.motion import walk
+from tracker.tracking.prediction.motion import walk
 
 
 def transition(dt_s: float) -> FloatArray:

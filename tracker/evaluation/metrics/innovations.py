@@ -13,9 +13,9 @@ from scipy.special import gammaln
 
 from tracker.containers import BoolArray, FloatArray, IntArray
 from tracker.evaluation.metrics.rounds import Round
-from tracker.tracking.innovation import innovation_of, noise_of, seen_from
-from tracker.tracking.modes import merge_modes
-from tracker.tracking.sensor_kinds import BEARING, POSITION, RANGE
+from tracker.tracking.prediction.modes import merge_modes
+from tracker.tracking.sensing.innovation import innovation_of, noise_of, seen_from
+from tracker.tracking.sensing.sensor_kinds import BEARING, POSITION, RANGE
 
 
 @dataclass(frozen=True, slots=True, eq=False)

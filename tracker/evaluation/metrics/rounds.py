@@ -9,8 +9,8 @@ import numpy as np
 
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, IntArray
-from tracker.tracking.claims import Claims
 from tracker.tracking.people import ID
+from tracker.tracking.sensing.claims import Claims
 from tracker.tracking.trace import Watched
 
 

@@ -13,9 +13,9 @@ from tracker.evaluation.metrics.gospa import gospa_frames
 from tracker.evaluation.metrics.identity import identity_switches, track_purity
 from tracker.evaluation.metrics.matching import distances, match_faithfully
 from tracker.evaluation.metrics.ospa import ospa_of
-from tracker.evaluation.metrics.raise_reports import Allowed
-from tracker.evaluation.metrics.raises import count_raises
-from tracker.evaluation.metrics.trial_episodes import judge_trial
+from tracker.evaluation.metrics.raised_hands.raise_reports import Allowed
+from tracker.evaluation.metrics.raised_hands.raises import count_raises
+from tracker.evaluation.metrics.raised_hands.trial_episodes import judge_trial
 
 CUTOFF_M = 1.0
 #: Squared normalized errors in the plane that a right covariance keeps below, 95 times of 100.

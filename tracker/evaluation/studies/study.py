@@ -191,20 +191,29 @@ class PeopleStudy:
         return len(self.rows["gospa_m"])
 
     @property
+    def remark(self) -> str:
+        """What one must know to judge the false tracks and raises."""
+        clutter = self.scenario.clutter_per_frame
+        return (
+            f"In every image {clutter:g} raised hands on average are nobody's: false tracks and "
+            f"false raises come of these. A trial lasts {self.scenario.duration_s:g} s."
+        )
+
+    @property
     def figures(self) -> tuple[Figure, ...]:
         """The table of the study."""
         rows = self.rows
         hands, again = float(rows["hands"].sum()), float(rows["raised_again"].sum())
         return (
             _mean("GOSPA (m), cutoff 1 m", rows["gospa_m"], "less"),
-            _mean("  localisation (m^2)", rows["gospa_localisation"], "less"),
-            _mean("  missed (m^2)", rows["gospa_missed"], "less"),
-            _mean("  false (m^2)", rows["gospa_false"], "less"),
+            _mean("  error of places (m²)", rows["gospa_localisation"], "less"),
+            _mean("  people missed (m²)", rows["gospa_missed"], "less"),
+            _mean("  false tracks (m²)", rows["gospa_false"], "less"),
             _mean("OSPA (m), cutoff 1 m", rows["ospa_m"], "less"),
             _mean("missed share of people", rows["missed_share"], "0"),
             _mean("false tracks in a frame", rows["false_tracks"], "0"),
             _mean("identity switches a minute", rows["identity_switches_per_min"], "0"),
-            _mean("track purity, share", rows["track_purity"], "near 1"),
+            _mean("track purity", rows["track_purity"], "near 1"),
             _mean("RMSE of found people (m)", rows["rmse_m"], "less"),
             _mean("NEES of the position (ideal 2)", rows["nees_position"], "near 2"),
             _mean("people inside the 95 % ellipse, share", rows["covered_share"], "near 0.95"),

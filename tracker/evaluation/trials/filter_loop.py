@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.containers import FloatArray
-from tracker.tracking.claims import Claims
-from tracker.tracking.correction import correct
-from tracker.tracking.motion import Motion, carry
+from tracker.tracking.prediction.motion import Motion, carry
+from tracker.tracking.sensing.claims import Claims
+from tracker.tracking.update.correction import correct
 
 
 def filter_trials(

@@ -22,8 +22,8 @@ from tracker.evaluation.trials.machine_code import machine_code
 from tracker.evaluation.trials.scenario import FilterScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.geometry import normalize_angle
-from tracker.tracking.claims import claims_of
-from tracker.tracking.motion import walk
+from tracker.tracking.prediction.motion import walk
+from tracker.tracking.sensing.claims import claims_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,14 +15,19 @@ from tracker.config import Config
 from tracker.containers import FloatArray, IntArray, Measurements
 from tracker.containers.arrays import frozen
 from tracker.evaluation.trials.machine_code import machine_code
-from tracker.tracking.association import assign
-from tracker.tracking.claims import Claims, claims_of
-from tracker.tracking.correction import correct
-from tracker.tracking.gating import Pairs, floored
-from tracker.tracking.innovation import innovation_of, noise_of, seen_from, squared_distance
-from tracker.tracking.motion import Motion, carry, walk
-from tracker.tracking.sensor_kinds import BEARING_RANGE, area
+from tracker.tracking.association.association import assign
+from tracker.tracking.association.gating import Pairs, floored
+from tracker.tracking.prediction.motion import Motion, carry, walk
+from tracker.tracking.sensing.claims import Claims, claims_of
+from tracker.tracking.sensing.innovation import (
+    innovation_of,
+    noise_of,
+    seen_from,
+    squared_distance,
+)
+from tracker.tracking.sensing.sensor_kinds import BEARING_RANGE, area
 from tracker.tracking.settings import Settings, settings_of
+from tracker.tracking.update.correction import correct
 
 
 class Followed(NamedTuple):

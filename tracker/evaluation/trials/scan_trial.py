@@ -13,13 +13,13 @@ from tracker.evaluation.metrics.scores import TrialScores
 from tracker.evaluation.trials.scenario import ScanScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.pipeline import Pipeline
-from tracker.simulation.bistro import draw_bistro
-from tracker.simulation.camera_view import hands_in_view
 from tracker.simulation.floor_map import floor_map
 from tracker.simulation.lidar import ScanSimulator
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
-from tracker.simulation.restaurant import draw_restaurant
+from tracker.simulation.random_rooms.bistro import draw_bistro
+from tracker.simulation.random_rooms.restaurant import draw_restaurant
+from tracker.simulation.rendering.camera_view import hands_in_view
 from tracker.simulation.scene import Scene
 from tracker.simulation.shown_hands import show_hands
 from tracker.simulation.stream import map_from_camera, map_from_laser

@@ -13,16 +13,16 @@ from tracker.containers.arrays import COUNTS, frozen, sealed
 from tracker.evaluation.metrics.frames import TrackFrames
 from tracker.evaluation.trials.machine_code import machine_code
 from tracker.evaluation.trials.people_sensing import SensedFrames
-from tracker.tracking.bias import BIAS
-from tracker.tracking.claims import Claims, claims_of
 from tracker.tracking.frame import track_frame
 from tracker.tracking.instant import Instant
-from tracker.tracking.motion import modes_of
+from tracker.tracking.life_cycle.renewal import Frame
 from tracker.tracking.people import CONFIRMED, ID, RAISED, People, room_for
 from tracker.tracking.person_tracker import NO_LIKENESS
-from tracker.tracking.renewal import Frame
+from tracker.tracking.prediction.motion import modes_of
+from tracker.tracking.sensing.claims import Claims, claims_of
 from tracker.tracking.settings import Settings, settings_of
 from tracker.tracking.trace import NO_TRACE, Trace
+from tracker.tracking.update.bias import BIAS
 
 #: There is room for so many customers a frame at first.
 PEOPLE_EXPECTED = 8

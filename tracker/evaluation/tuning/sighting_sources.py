@@ -19,7 +19,7 @@ from tracker.perception.detector import HandDetector
 from tracker.pipeline import Pipeline
 from tracker.ranging.rays import body_pose
 from tracker.recording import Topics
-from tracker.simulation.restaurant import draw_restaurant
+from tracker.simulation.random_rooms.restaurant import draw_restaurant
 from tracker.simulation.scene import Camera, DrivePoint, Robot
 from tracker.simulation.stream import map_from_camera, map_from_laser
 

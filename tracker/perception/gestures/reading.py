@@ -9,11 +9,11 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import BoolArray, Hands, IntArray, Refusal
 from tracker.gesture import Gesture
+from tracker.perception.bodies.owners import hand_size_px
 from tracker.perception.gestures.model import sign_probabilities
 from tracker.perception.gestures.over_time import Look, SigningHand
 from tracker.perception.gestures.shape import finger_stretch, palm_faces
 from tracker.perception.verdict.memory import HandMemory, RememberedHand
-from tracker.perception.verdict.owners import hand_size_px
 from tracker.perception.verdict.raise_rules import MIDDLE_ROOT, MIDDLE_TIP, WRIST
 
 #: As long as the memory of hands itself.

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray
-from tracker.perception.bodies import ELBOWS, HEAD, SHOULDERS, WRISTS, Bodies, Joint
-from tracker.perception.verdict.owners import hand_size_px, head_distance_px
+from tracker.perception.bodies.bodies import ELBOWS, HEAD, SHOULDERS, WRISTS, Bodies, Joint
+from tracker.perception.bodies.owners import hand_size_px, head_distance_px
 from tracker.perception.verdict.raise_rules import MIDDLE_ROOT, MIDDLE_TIP, THUMB_TIP, WRIST
 from tracker.perception.verdict.weights import NAMES
 

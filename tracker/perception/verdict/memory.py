@@ -8,8 +8,8 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from tracker.containers import FloatArray, Hands, IntArray
+from tracker.perception.bodies.owners import hand_size_px
 from tracker.perception.verdict.belief import update_belief
-from tracker.perception.verdict.owners import hand_size_px
 
 #: A hand that waves goes so far from one image to the next, in its lengths ...
 _REACH_HANDS = 1.5

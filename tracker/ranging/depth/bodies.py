@@ -12,8 +12,8 @@ from tracker.geometry import normalize_angle
 from tracker.ranging.depth.noise import depth_noise_m
 from tracker.ranging.depth.points import DepthPoints
 from tracker.ranging.depth.slices import depth_slice
-from tracker.ranging.people import PersonClusters
-from tracker.ranging.segments import find_segments
+from tracker.ranging.scan.people import PersonClusters
+from tracker.ranging.scan.segments import find_segments
 
 #: Neighbors of the slice that are farther apart belong to different things; more than the scan's,
 #: since a depth camera's noise is (guess).

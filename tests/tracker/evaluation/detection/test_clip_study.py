@@ -13,7 +13,7 @@ from tracker.evaluation.detection.clip_study import (
     read_clips,
     study_clips,
 )
-from tracker.report.photo_table import clip_table
+from tracker.report.detection.photo_table import clip_table
 
 
 def results(*raised):

@@ -5,9 +5,9 @@ from tracker import Config
 from tracker.containers import Hands
 from tracker.evaluation.detection.episode import FRAMES_TO_FIND, score_caller, score_idlers
 from tracker.evaluation.detection.scenes import HAND_UP_S, Conditions, caller_scene, idlers_scene
-from tracker.simulation.camera_view import raised_hand_pixels
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
+from tracker.simulation.rendering.camera_view import raised_hand_pixels
 from tracker.simulation.stream import map_from_camera
 
 CONFIG = Config()

@@ -158,7 +158,7 @@ def test_a_picture_that_cannot_be_read_is_named(tmp_path):
 
 
 def test_files_and_a_contact_sheet_show_what_went_wrong(photos, tmp_path):
-    from tracker.report.photo_table import photo_tables, write_photos
+    from tracker.report.detection.photo_table import photo_tables, write_photos
 
     wrong = study_photos(photos, Answers(hands_at(), hands_at((9, 90)), hands_at((200, 90))))
     files = write_photos(wrong, tmp_path / "out")
@@ -174,7 +174,7 @@ def test_files_and_a_contact_sheet_show_what_went_wrong(photos, tmp_path):
 
 
 def test_no_contact_sheet_where_nothing_went_wrong(photos, tmp_path):
-    from tracker.report.photo_table import photo_tables, write_photos
+    from tracker.report.detection.photo_table import photo_tables, write_photos
 
     right = study_photos(photos[:1], Answers(hands_at((50, 100))))
     assert len(write_photos(right, tmp_path)) == 2

@@ -5,10 +5,10 @@ import pytest
 
 from tracker import Config, Measurements, PersonTracker
 from tracker.evaluation.metrics.rounds import rounds_of
-from tracker.tracking.claims import claims_of
-from tracker.tracking.gating import find_pairs
-from tracker.tracking.modes import merge_modes
+from tracker.tracking.association.gating import find_pairs
 from tracker.tracking.people import TAG, room_for
+from tracker.tracking.prediction.modes import merge_modes
+from tracker.tracking.sensing.claims import claims_of
 from tracker.tracking.settings import settings_of
 from tracker.tracking.trace import NO_TRACE, Trace, Watched
 

@@ -3,9 +3,9 @@ import pytest
 
 from tracker import Config
 from tracker.containers import FrameResult, Hands, Measurements, Tracks, Truth
-from tracker.evaluation.metrics.episodes import EpisodeEvaluation
 from tracker.evaluation.metrics.frames import TrackFrames, TruthFrames
-from tracker.evaluation.metrics.raises import count_raises
+from tracker.evaluation.metrics.raised_hands.episodes import EpisodeEvaluation
+from tracker.evaluation.metrics.raised_hands.raises import count_raises
 from tracker.evaluation.metrics.scores import TrialScores, score_trial
 
 PERIOD_NS = 100_000_000

@@ -16,9 +16,9 @@ from tracker.evaluation.trials.filter_study import (
     run_filter,
 )
 from tracker.evaluation.trials.scenario import SCENARIOS, default_config
-from tracker.tracking.claims import claims_of
-from tracker.tracking.correction import correct
-from tracker.tracking.motion import carry, walk
+from tracker.tracking.prediction.motion import carry, walk
+from tracker.tracking.sensing.claims import claims_of
+from tracker.tracking.update.correction import correct
 
 TRIALS = 1000
 

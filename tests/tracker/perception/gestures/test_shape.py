@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from tracker.perception.gestures.shape import finger_stretch, hand_shape, palm_faces, thumb_rise
-from tracker.simulation.hand_shape import hand_landmarks
 from tracker.simulation.hand_signs import draw_hands
+from tracker.simulation.rendering.hand_shape import hand_landmarks
 
 
 @pytest.fixture

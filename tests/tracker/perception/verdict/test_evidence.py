@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tracker.containers import Hands
-from tracker.perception.bodies import Bodies
+from tracker.perception.bodies.bodies import Bodies
 from tracker.perception.verdict.evidence import Seen, gather_evidence
 from tracker.perception.verdict.weights import NAMES
 

@@ -1,0 +1,1 @@
+"""What the nodes on ROS 2 need beside the shared part; it imports rclpy."""

@@ -1,0 +1,1 @@
+"""What the ROS node and the DDS node share; it imports neither ROS nor DDS."""

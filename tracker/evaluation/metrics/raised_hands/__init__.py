@@ -1,0 +1,1 @@
+"""Was every raised hand reported, how soon, and as whom? Rows per raise, and their totals."""

@@ -1,0 +1,1 @@
+"""Parameter files as ROS 2 reads them, and parameters that are gone."""

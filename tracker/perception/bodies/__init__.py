@@ -1,0 +1,1 @@
+"""People in a picture: pose models, and whose hand is whose."""

@@ -1,0 +1,1 @@
+"""What is wrong with the input: unused sensors, wrong clocks, missing messages."""

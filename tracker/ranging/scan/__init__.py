@@ -1,0 +1,1 @@
+"""What stands in a scan: beams, segments, people, furniture."""

@@ -1,0 +1,1 @@
+"""Tables and plots of how well raised hands are detected."""

@@ -1,0 +1,1 @@
+"""What is remembered of a recording while it streams, in little memory."""

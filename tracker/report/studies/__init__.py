@@ -1,0 +1,1 @@
+"""Pages, plots and tables of Monte Carlo studies and of searches for parameters."""

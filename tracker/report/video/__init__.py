@@ -1,0 +1,1 @@
+"""Pictures of single moments, and the videos and viewers that show them in a row."""

@@ -1,0 +1,1 @@
+"""Rooms and guests drawn at random."""

@@ -1,0 +1,1 @@
+"""What the simulated cameras see: people, furniture and rooms as pictures and depth."""

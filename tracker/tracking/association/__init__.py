@@ -1,0 +1,1 @@
+"""Which measurement belongs to which track: admission, gating, probabilities."""

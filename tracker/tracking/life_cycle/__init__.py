@@ -1,0 +1,1 @@
+"""Who is a track: births, duplicates, deaths, and streaks of raised hands."""

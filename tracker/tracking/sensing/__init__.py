@@ -1,0 +1,1 @@
+"""What sensors measure of a person: sensor kinds, innovations, fields of view."""

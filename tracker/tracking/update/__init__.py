@@ -1,0 +1,1 @@
+"""What measurements make of a track: correction, outliers, offsets that last."""
