@@ -22,7 +22,7 @@ _Batch = TypeVar("_Batch")
 
 
 def check_stamp(stamp_ns: int) -> None:
-    """Refuse what is no stamp.
+    """Refuse an invalid stamp.
 
     Raises:
         ClockError: Negative, beyond 63 bits, or not an integer.
@@ -43,7 +43,7 @@ def frozen(value: ArrayLike, dtype: np.dtype[Any] = NUMBERS) -> NDArray[Any]:
 
 
 def sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """The very array, read-only from now on; for its maker, who is done with it."""
+    """Make this array itself read-only; for the code that has just made it."""
     array.setflags(write=False)
     return array
 
@@ -67,7 +67,7 @@ def check_rows(batch: Any, count: int, layout: Layout) -> None:
 
 
 def trusted(kind: type[_Batch], /, **columns: Any) -> _Batch:
-    """A batch whose arrays are known to fit and to be read-only: nobody looks at them again.
+    """A batch without checks, for arrays that are known to fit and to be read-only.
 
     Frozen classes with slots are filled one call after the other, so these have none.
     """
@@ -90,7 +90,7 @@ def select(batch: _Batch, rows: Any) -> _Batch:
             part = each[rows]
             if part.ndim != each.ndim:
                 raise ShapeError(
-                    f"Rows {rows!r} were asked for; needed: a mask, a slice or a list of numbers."
+                    f"Rows {rows!r} were given; expected a mask, a slice or a list of numbers."
                 )
             chosen[name] = sealed(part)
     return trusted(type(batch), **chosen)
@@ -113,7 +113,7 @@ def numbers(name: str, value: ArrayLike) -> FloatArray:
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ShapeError(f"`{name}` is {value!r}; needed is an array of numbers.") from error
+        raise ShapeError(f"`{name}` is {value!r}; expected an array of numbers.") from error
 
 
 def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
@@ -126,4 +126,4 @@ def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
         column[...] = value
     except (TypeError, ValueError, OverflowError) as error:
         shape = numbers(name, value).shape
-        raise ShapeError(f"`{name}` has shape {shape}; needed is {column.shape}.") from error
+        raise ShapeError(f"`{name}` has shape {shape}; expected {column.shape}.") from error

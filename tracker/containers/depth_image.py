@@ -45,7 +45,7 @@ class DepthImage:
 
     @staticmethod
     def of(stamp_ns: int, frame_id: str, pixels: NDArray[Any]) -> DepthImage:
-        """A picture whose pixels are at hand, as `read` gives them."""
+        """A depth image whose pixels are already decoded, in the form of `read`."""
         return DepthImage(stamp_ns, frame_id, lambda: pixels)
 
 
@@ -63,7 +63,7 @@ def depth_in_meters(pixels: NDArray[Any]) -> DepthArray:
     """
     if pixels.ndim != 2 or pixels.dtype not in (np.uint16, np.float32):
         raise ShapeError(
-            f"A depth image has shape {pixels.shape} and type {pixels.dtype}; needed are "
+            f"A depth image has shape {pixels.shape} and type {pixels.dtype}; expected "
             "(height, width) and uint16 (millimeters) or float32 (meters)."
         )
     unit_m = np.float32(_MILLIMETERS if pixels.dtype == np.uint16 else 1.0)

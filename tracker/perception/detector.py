@@ -1,4 +1,4 @@
-"""What must a hand detector be able to do? The one interface behind which any model can stand."""
+"""The interface that every hand detector implements."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class HandDetector(Protocol):
 
 @runtime_checkable
 class PiecewiseDetector(HandDetector, Protocol):
-    """A detector that searches the picture piece by piece: it can be told where, and how much."""
+    """A detector that searches the picture in pieces; its caller chooses where, and how many."""
 
     @property
     def work(self) -> PerceptionWork:
@@ -51,5 +51,5 @@ class PiecewiseDetector(HandDetector, Protocol):
         ...
 
     def set_budget(self, runs: int | None) -> None:
-        """How many model runs an image may take from now on; None is as configured."""
+        """Set the number of model runs per image from now on; None means as configured."""
         ...

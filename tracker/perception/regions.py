@@ -43,7 +43,7 @@ class Regions(Rows):
 
     @staticmethod
     def none() -> Regions:
-        """No region at all."""
+        """No regions."""
         return Regions(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
 
 

@@ -20,7 +20,7 @@ from tracker.tracking.sensing.sensor_kinds import BEARING, POSITION, RANGE
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Innovations:
-    """K measurements, each held against the person whom it was assigned to.
+    """Innovations of K measurements, each with the person to whom it was assigned.
 
     Attributes:
         stamp_ns: Shape (K,).

@@ -146,7 +146,7 @@ def _transforms(
 
 
 class _ShownHands:
-    """Stands in for the hand models: it is told who is there, and looks at no picture."""
+    """Replaces the hand models: it gets the truth, and looks at no picture."""
 
     def __init__(self, scenario: ScanScenario, scene: Scene, rng: np.random.Generator) -> None:
         self._scenario, self._scene, self._rng = scenario, scene, rng

@@ -94,9 +94,7 @@ class Bodies(Rows):
         shapes = [np.shape(getattr(self, name)) for name in self.__slots__]
         needed = [(count, len(Joint), 2), (count, len(Joint)), (count,), (count,), (count, 2, 2)]
         if shapes != needed:
-            raise ShapeError(
-                f"Bodies disagree in shape: {shapes}; needed is (P, 17, 2) and so on."
-            )
+            raise ShapeError(f"Bodies disagree in shape: {shapes}; expected (P, 17, 2) and so on.")
         for name in self.__slots__:
             view = np.asarray(getattr(self, name), dtype=np.float64).view()
             view.flags.writeable = False

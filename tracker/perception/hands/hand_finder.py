@@ -54,7 +54,7 @@ class HandFinder:
         self._suggested = regions_from_landmarks(landmarks_px)
 
     def spare(self, places: int) -> None:
-        """Search so many places less in the next image, down to one."""
+        """Search this many places less in the next image, but at least one."""
         self._spared = places
 
     def set_budget(self, runs: int | None) -> None:

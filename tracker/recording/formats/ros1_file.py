@@ -76,8 +76,8 @@ class Ros1Source:
             said = _typestore().deserialize_ros1(message.data, message.type_name)
         except MALFORMED as error:
             raise RecordingError(
-                f"{len(message.data)} bytes came as ROS 1 {message.type_name}; they do not hold "
-                f"one ({error})."
+                f"{len(message.data)} bytes were received as ROS 1 {message.type_name}, but are "
+                f"not such a message ({error})."
             ) from error
         return events_from_message(
             message.type_name, said, is_static=is_static, max_pixels=max_pixels, is_depth=is_depth

@@ -1,4 +1,4 @@
-"""Was everybody there, fresh, raised and served: when, and how certain was it?
+"""When did each person exist, and was fresh, raised and served; and how certain was it?
 
 Kept beside `History` for the pages that want more than intervals. Bounded in memory: rows are
 thinned, and whoever was last seen longest ago leaves.
