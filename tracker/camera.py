@@ -83,8 +83,8 @@ class CameraModel:
         if not np.all(np.isfinite(numbers)) or self.fx <= 0 or self.fy <= 0:
             raise ConfigError(
                 f"Camera intrinsics fx {self.fx}, fy {self.fy}, cx {self.cx}, cy {self.cy}, "
-                f"distortion {list(self.distortion)} came; "
-                "needed are finite numbers and positive focal lengths. An uncalibrated camera "
+                f"distortion {list(self.distortion)} are invalid; expected finite numbers and "
+                "positive focal lengths. An uncalibrated camera "
                 "sends zeros: calibrate it, or set use_camera_info: false."
             )
         self.lens  # noqa: B018  # an unknown one is refused here, not at the first picture
@@ -115,8 +115,8 @@ class CameraModel:
             what = "a region of interest" if self.sensor is not None else "pictures"
             raise ConfigError(
                 f"Intrinsics of {what} of {self.width}x{self.height} came with a picture of "
-                f"{width}x{height}, which is no scaled copy; needed are the intrinsics of that "
-                "size. Mend the driver's CameraInfo (width, height, binning, roi), or set "
+                f"{width}x{height}, which is not a scaled copy; expected the intrinsics of that "
+                "size. Correct the driver's CameraInfo (width, height, binning, roi), or set "
                 "use_camera_info: false and camera_fx, camera_fy, camera_cx, camera_cy, "
                 "camera_width, camera_height."
             )
@@ -155,7 +155,7 @@ class CameraModel:
         """
         if self.rectified is None:
             raise ConfigError(
-                "A CameraInfo without P came; it tells how images are rectified. Calibrate the "
+                "The CameraInfo has no P, which says how images are rectified. Calibrate the "
                 "camera, or set image_form: raw."
             )
         return CameraModel(

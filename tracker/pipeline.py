@@ -206,7 +206,7 @@ class Pipeline:
         return self.transforms.can_lookup(self.config.fixed_frame, frame, stamp_ns)
 
     def process(self, image: CameraImage) -> FrameResult:
-        """The way of one frame, now.
+        """Process one frame.
 
         Returns:
             What came of it. Missing transforms and scans are no errors: they are noted, hands are
@@ -221,8 +221,8 @@ class Pipeline:
         if self._size not in (None, size):
             self._note(
                 NoteKind.PICTURE_SIZE_CHANGED,
-                f"pictures of {image.width}x{image.height} follow others: hands are followed only "
-                "through pictures of one size",
+                f"pictures of {image.width}x{image.height} follow pictures of another size: "
+                "hands cannot be followed from one size to another",
             )
         self._size = size
         if image.remark:
@@ -271,7 +271,7 @@ class Pipeline:
         beyond = len(hands) - np.count_nonzero(measurements.hand >= 0)
         if beyond:
             end_deg = np.rad2deg(self.camera.lens.max_off_axis_rad)
-            text = f"{beyond} hands beyond the lens's range of {end_deg:.0f} degrees: no bearing"
+            text = f"{beyond} hands outside the lens's {end_deg:.0f} degrees: no bearing"
             self._note(NoteKind.HAND_BEYOND_LENS, text)
         if scan is not None:
             self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
@@ -382,7 +382,7 @@ class Pipeline:
         if place.is_first and self.tracker.has_tracks:
             self._note(
                 NoteKind.NEW_FIXED_FRAME,
-                "the first transform has come: tracks start again in the fixed frame",
+                "the first transform was received: tracking starts again in the fixed frame",
             )
             self.tracker.reset()
             self._memory.background.reset()
@@ -399,7 +399,8 @@ class Pipeline:
             ahead_s = (kept.stamp_ns - stamp_ns) / 1e9
             self._note(
                 NoteKind.CALLS_OF_LATER,
-                f"the kept waiting list is {ahead_s:.1f} s later than the images: it begins empty",
+                f"the stored waiting list is {ahead_s:.1f} s later than the images: it starts "
+                "empty",
             )
 
     def _choose_scan(
@@ -424,7 +425,7 @@ class Pipeline:
         self._turn = turn
 
     def _let_go(self, tracks: Tracks) -> Tracks:
-        """Who says so with `gesture_release` is served no more; the next image chooses another."""
+        """End the service of a customer who shows `gesture_release`."""
         row = tracks.row_of(tracks.selected_id)
         gesture = Gesture.NONE if row is None else Gesture(int(tracks.gesture[row]))
         if gesture is Gesture.NONE or gesture.word != self.config.gesture_release:

@@ -59,7 +59,7 @@ _STOP_S = 10.0
 
 
 class NodeCore:
-    """The node without its wire.
+    """The node without ROS or DDS.
 
     `start` it, hand every message to `receive`, publish `diagnostics` once in
     `diagnostics.REPORT_PERIOD_S`, and `stop` it. All methods may be called from any thread and
@@ -134,12 +134,12 @@ class NodeCore:
 
     @property
     def is_hand_up(self) -> bool:
-        """Whether the last that was said is that a hand is up."""
+        """Whether the last published `hand_raised` was true."""
         return self._last is not None and self._last.hand_raised
 
     @property
     def is_alive(self) -> bool:
-        """Whether the worker runs; it ends by `stop`, or by a mistake of ours that it prints."""
+        """Whether the worker runs; it ends by `stop`, or by an error that it prints."""
         return self._worker.is_alive()
 
     @property
@@ -160,7 +160,7 @@ class NodeCore:
             self._page.close()
 
     def receive(self, item: Input, message: Encoded) -> None:
-        """Store what has come on the wire."""
+        """Store a received message."""
         self._diagnostics.heard(item)
         if item is Input.IMAGES:
             self._receive_image(message)
@@ -168,7 +168,7 @@ class NodeCore:
             self._inbox.put(item, message)
 
     def enable(self, is_enabled: bool) -> str:
-        """Process images from now on, or leave them and forget everybody.
+        """Process images from now on, or ignore them and forget everybody.
 
         Returns:
             What happened, in words.
@@ -182,7 +182,7 @@ class NodeCore:
         return words if was_enabled != is_enabled else f"already {words}"
 
     def release(self) -> tuple[bool, str]:
-        """Let the selected customer go; the next one is selected with the next image.
+        """End the service of the selected customer; the next image selects another.
 
         Returns:
             Whether anybody was selected, and what happened, in words.
@@ -220,7 +220,7 @@ class NodeCore:
         self._inbox.order(lambda: self._pipeline.configure(config))
 
     def refuse(self, item: Input, text: str) -> None:
-        """Count something that came and makes no sense, and say so once in a while."""
+        """Count a malformed message, and log it once in a while."""
         self._diagnostics.malformed(item, text)
         self._faults.add(item.value, text)
 
@@ -288,7 +288,7 @@ class NodeCore:
         return _CATCH_UP if can_keep_up else 1
 
     def _catch_up(self) -> None:
-        """Follow the orders and take in what has come, except images."""
+        """Execute pending orders and take in received data, except images."""
         delivery = self._inbox.take()
         for order in delivery.orders:
             order()
@@ -367,7 +367,7 @@ class NodeCore:
                 self._remarks.add(Input.IMAGES.value, note.text)
 
     def _pace(self, result: FrameResult) -> None:
-        """Let the search shrink before images are lost, and grow again."""
+        """Reduce the search before images are lost, and increase it again."""
         if result.work is not None:
             busy_share = self._busy_s * self._config.processing_rate
             most = self._config.search_regions_per_frame
@@ -386,7 +386,7 @@ class NodeCore:
         self._take_back()
 
     def _mind_silence(self) -> None:
-        """Report nobody on the word of a camera that has died; the tracks wait for it."""
+        """Report nobody while the camera is silent; the tracks are kept."""
         silence_s = self._diagnostics.silence_s
         if self._last is None or len(self._images) or silence_s is None:
             return
@@ -407,7 +407,7 @@ class NodeCore:
 
     def _image_of(self, message: Encoded) -> CameraImage:
         (image,) = decode(*message, max_pixels=self._config.picture_max_pixels)
-        assert isinstance(image, CameraImage), "the shell subscribes to images only"
+        assert isinstance(image, CameraImage), "only images are subscribed to"
         return image
 
     def _note_reset(self, reason: str) -> None:

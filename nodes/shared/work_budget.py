@@ -1,4 +1,4 @@
-"""How much may perception do in an image? Less, before the node falls behind and loses images."""
+"""How much may perception do per image? Less, before the node is too slow."""
 
 from __future__ import annotations
 

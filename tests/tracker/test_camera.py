@@ -132,7 +132,7 @@ def test_a_picture_rounded_by_a_pixel_or_padded_by_a_macroblock_is_the_same_pict
 @pytest.mark.parametrize("size", [(640, 480), (1080, 1920), (1920, 1200), (1440, 1080)])
 def test_a_picture_of_another_shape_is_refused_with_both_sizes(size):
     camera = CameraModel(1400.0, 1400.0, 960.0, 540.0, width=1920, height=1080)
-    with pytest.raises(ConfigError, match=rf"1920x1080 .* {size[0]}x{size[1]}.*no scaled copy"):
+    with pytest.raises(ConfigError, match=rf"1920x1080 .* {size[0]}x{size[1]}.*not a scaled copy"):
         camera.for_picture(*size)
 
 

@@ -146,7 +146,7 @@ def test_hand_raised_needs_no_lidar_and_gives_no_pose_then(located):
     result = play(located, 4, scan=None)[-1]
     assert result.hand_raised
     assert result.customer_pose is None
-    assert result.notes == (Note(NoteKind.NO_SCAN, "no scan has come"),)
+    assert result.notes == (Note(NoteKind.NO_SCAN, "no scan was received"),)
 
 
 def test_an_old_scan_is_not_used(located):

@@ -93,7 +93,7 @@ def _cache_in(folder: Path, may_compile: bool) -> type[FunctionCache]:
                 except _GARBLED:  # compile it again
                     self.flush()
             if kept is None and not may_compile:
-                raise FileNotFoundError(f"{folder} has no machine code that can be read")
+                raise FileNotFoundError(f"{folder} has no compiled code that can be read")
             return kept
 
         def save_overload(self, sig: Any, data: Any) -> None:

@@ -1,4 +1,4 @@
-"""What travels through the rooms: one typed, frozen container per concept.
+"""The data types that are passed between the rooms: typed, frozen containers.
 
 Row i of every array of a batch is the same thing (the same hand, measurement, person). Arrays are
 made read-only, stamps are integer nanoseconds, frames and units stand in the names.

@@ -18,7 +18,7 @@ NUMBERS, COUNTS, FLAGS = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.b
 
 
 def check_stamp(stamp_ns: int) -> None:
-    """Refuse what is no stamp.
+    """Refuse an invalid stamp.
 
     Raises:
         ClockError: Negative, beyond 63 bits, or not an integer.
@@ -39,7 +39,7 @@ def frozen(value: ArrayLike, dtype: np.dtype[Any] = NUMBERS) -> NDArray[Any]:
 
 
 def sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """The very array, read-only from now on; for its maker, who is done with it."""
+    """Make this array itself read-only; for the code that has just made it."""
     array.setflags(write=False)
     return array
 
@@ -61,7 +61,7 @@ def numbers(name: str, value: ArrayLike) -> FloatArray:
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ShapeError(f"`{name}` is {value!r}; needed is an array of numbers.") from error
+        raise ShapeError(f"`{name}` is {value!r}; expected an array of numbers.") from error
 
 
 def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
@@ -74,4 +74,4 @@ def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
         column[...] = value
     except (TypeError, ValueError, OverflowError) as error:
         shape = numbers(name, value).shape
-        raise ShapeError(f"`{name}` has shape {shape}; needed is {column.shape}.") from error
+        raise ShapeError(f"`{name}` has shape {shape}; expected {column.shape}.") from error

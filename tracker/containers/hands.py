@@ -61,21 +61,21 @@ class Hands(Rows):
         landmarks_px: Shape (H, 21, 2): x to the right, y down, in pixels of the full image, in
             MediaPipe's order (0 wrist, 4 thumb tip, 9 middle finger's root, 12 its tip, 20 pinky
             tip).
-        score: Shape (H,): the landmark model's word that this is a hand, in [0, 1].
+        score: Shape (H,): the landmark model's probability that this is a hand, in [0, 1].
         right: Shape (H,): probability of a right hand, in [0, 1].
-        raised: Shape (H,), bool: the raise rule's verdict on this one image.
+        raised: Shape (H,), bool: whether the raise rule calls it raised in this image.
         raise_measure: Shape (H,): what the rule compared with its threshold (a probability for the
             `evidence` rule, image heights for `image`, palm lengths for `palm`).
-        torso_px: Shape (H, 2): the middle of shoulders and hips of whose hand it is; NaN where
-            that is not known. None means that of no hand.
-        refusal: Shape (H,), int64: of each hand that is not raised the `Refusal`; 0 for raised
-            ones, and where the detector gives no reason. None means 0 for all.
-        seated: Shape (H,), in [0, 1]: whether whose hand it is sits; NaN where that is not known.
-            None means that of no hand.
-        gesture: Shape (H,), int64: what the hand has said of late, a `tracker.gesture.Gesture`;
-            NONE is 0, and stands where nobody is sure. None means 0 for all.
-        wrist_only: Shape (H,), bool: a forearm ends there, and the landmarks but the wrist are
-            supposed. None means that of no hand.
+        torso_px: Shape (H, 2): the middle of the owner's shoulders and hips; NaN where unknown.
+            None means unknown for all.
+        refusal: Shape (H,), int64: the `Refusal`: why a hand is not raised; 0 for raised hands,
+            and where there is no reason. None means 0 for all.
+        seated: Shape (H,), in [0, 1]: whether the owner sits; NaN where unknown. None means
+            unknown for all.
+        gesture: Shape (H,), int64: the `tracker.gesture.Gesture`; 0 (NONE) where it is not sure.
+            None means 0 for all.
+        wrist_only: Shape (H,), bool: only a forearm was seen, and all landmarks except the wrist
+            are assumed. None means False for all.
     """
 
     landmarks_px: Annotated[FloatArray, Column((21, 2))]
@@ -96,7 +96,7 @@ class Hands(Rows):
 
     @property
     def is_owned(self) -> BoolArray:
-        """Shape (H,): the torso of whose hand it is is known."""
+        """Shape (H,): the owner's torso is known."""
         return np.asarray(np.isfinite(self.torso_px).all(axis=-1))
 
     @property

@@ -1,4 +1,4 @@
-"""What do the sensors claim about people?"""
+"""What did the sensors measure of people?"""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class _Details(TypedDict, total=False):
 
 @dataclass(frozen=True, eq=False)
 class Measurements(Rows):
-    """What the sensors claim about people at one instant; row i of each array is one claim.
+    """What sensors measured of people at one instant; row i of each array is one measurement.
 
     A tracker can use every row: numbers are finite and below 1e9, covariances are positive
     definite. What cannot be used is refused where it is made.
@@ -226,7 +226,7 @@ class Measurements(Rows):
         if xy.ndim == 1 and xy.size in (0, 2):
             xy = xy.reshape(-1, 2)
         if xy.ndim != 2 or xy.shape[1] != 2:
-            raise ShapeError(f"`xy_m` has shape {xy.shape}; needed is (M, 2), a row for each.")
+            raise ShapeError(f"`xy_m` has shape {xy.shape}; expected (M, 2), a row for each.")
         count = len(xy)
         spread = np.empty((count, 2, 2))
         fill("covariance", spread, covariance)
@@ -249,7 +249,7 @@ class Measurements(Rows):
 def _usable(claims: Measurements, refuse: Refuse, is_ordinary: bool = False) -> Measurements:
     """The rows that a tracker can use; all of them where nothing needs a closer look."""
     if refuse not in ("raise", "drop"):
-        raise MeasurementError(f"`refuse` is {refuse!r}; needed is 'raise' or 'drop'.")
+        raise MeasurementError(f"`refuse` is {refuse!r}; expected 'raise' or 'drop'.")
     if is_ordinary:
         return claims
     if refuse == "drop":
@@ -316,6 +316,6 @@ def _whole(name: str, value: ArrayLike) -> ArrayLike:
     number = numbers(name, value)
     if not ((number == np.floor(number)) & (np.abs(number) < 2.0**63)).all():
         raise MeasurementError(
-            f"`{name}` is {value!r}; needed are whole numbers below 2^63, -1 where nobody knows."
+            f"`{name}` is {value!r}; expected whole numbers below 2^63, -1 if it is unknown."
         )
     return value

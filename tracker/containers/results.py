@@ -1,4 +1,4 @@
-"""What did a frame lead to, and what was true?"""
+"""The result of a frame, and the simulated truth."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Pose:
         object.__setattr__(self, "covariance_m2", frozen(self.covariance_m2))
         if self.covariance_m2.shape != (2, 2):
             raise ShapeError(
-                f"A pose's covariance has shape {self.covariance_m2.shape}; needed is (2, 2)."
+                f"A pose's covariance has shape {self.covariance_m2.shape}; expected (2, 2)."
             )
 
 
@@ -67,7 +67,7 @@ class Truth(Rows):
 
 @dataclass(frozen=True, slots=True)
 class PerceptionWork:
-    """What perception did for one image, and how long each stage took on the wall.
+    """What perception did for one image, and how long each stage took (wall-clock time).
 
     Attributes:
         places: Parts of the picture that were searched for palms.
@@ -89,7 +89,7 @@ class PerceptionWork:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameResult:
-    """Everything one processed image led to.
+    """The result of one processed image.
 
     Attributes:
         stamp_ns: The image's own stamp.

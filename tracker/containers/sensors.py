@@ -47,7 +47,7 @@ class CameraImage:
         if len(shape) != 3 or shape[2] != 3 or 0 in shape or self.bgr.dtype != np.uint8:
             raise ShapeError(
                 f"An image has shape {shape} and type {self.bgr.dtype}; "
-                "needed are (height, width, 3) with pixels in it and uint8."
+                "expected (height, width, 3) with pixels in it and uint8."
             )
 
     @property
@@ -94,7 +94,7 @@ class Scan:
         check_stamp(self.stamp_ns)
         object.__setattr__(self, "ranges_m", frozen(self.ranges_m))
         if self.ranges_m.ndim != 1:
-            raise ShapeError(f"Scan ranges have shape {self.ranges_m.shape}; needed is (B,).")
+            raise ShapeError(f"Scan ranges have shape {self.ranges_m.shape}; expected (B,).")
         if not np.isfinite(self.angle_min_rad):
             raise ShapeError(
                 f"A scan starts at {self.angle_min_rad} rad; a finite angle is needed."

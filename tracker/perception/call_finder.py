@@ -1,4 +1,4 @@
-"""Which hands call? Hands, their owners and all that was seen of both, weighed as evidence."""
+"""Which hands call? The evidence of hands and of their owners is weighed."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class CallFinder:
 
     @property
     def work(self) -> PerceptionWork:
-        """What the hands of the last image cost; the bodies are not counted."""
+        """Cost of the last image's hands, without bodies."""
         return replace(self._hands.work, place_bar=self._prior.highest)
 
     def find(self, image: CameraImage, hints: Hints = NO_HINTS) -> Hands:

@@ -1,4 +1,4 @@
-"""What must a hand detector be able to do? The one interface behind which any model can stand."""
+"""The interface that every hand detector implements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which hand of this image is which of the last one? What many images tell better than one.
+"""Which hand of this image is which of the last one? Evidence is added up over images.
 
 How long a palm looks, and where its thumb points, is uncertain by the noise of a few pixels, which
 is new in each image: means over a second tell more. Any detector will do; hands are recognized by

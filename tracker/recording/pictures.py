@@ -68,7 +68,7 @@ class VideoSource:
         self._is_fps_known = bool(np.isfinite(fps) and 0.1 < fps < 1000.0)
         self._fps = fps if self._is_fps_known else _FALLBACK_FPS
         if not self._is_fps_known:
-            self.notes.append(f"{path}: says no frame rate; {_FALLBACK_FPS:g} per second assumed.")
+            self.notes.append(f"{path}: has no frame rate; {_FALLBACK_FPS:g} per second assumed.")
         self.topics = {topic: TopicInfo("video frames", self._count)}
         self.start_ns, self.end_ns = 0, int(max(self._count - 1, 0) / self._fps * 1e9)
 
@@ -102,7 +102,7 @@ class VideoSource:
         if self._count - reached > max(_MISSING_SHARE * self._count, 3):
             raise RecordingError(
                 f"{self._path}: cannot be decoded beyond frame {number} of {self._count} "
-                f"({stamp_ns / 1e9:.3f} s). What came before was read. {_VIDEO_REMEDY}"
+                f"({stamp_ns / 1e9:.3f} s). Everything before was read. {_VIDEO_REMEDY}"
             )
 
     def close(self) -> None:
@@ -111,7 +111,7 @@ class VideoSource:
     def _open(self) -> cv2.VideoCapture:
         capture = cv2.VideoCapture(str(self._path))
         if not capture.isOpened():
-            raise unreadable(self._path, "OpenCV finds no video in it", _VIDEO_REMEDY)
+            raise unreadable(self._path, "OpenCV cannot read a video from it", _VIDEO_REMEDY)
         capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)  # as phones are held; OpenCV 4.11 does not
         return capture
 
@@ -182,7 +182,7 @@ def _bytes_of(path: Path) -> NDArray[np.uint8]:
     try:
         size = path.stat().st_size
         if size > _PHOTO_MAX_BYTES:
-            raise RecordingError(f"{path}: has {size} bytes; no photo has that many.")
+            raise RecordingError(f"{path}: has {size} bytes; that is too large for a photo.")
         return np.frombuffer(path.read_bytes(), dtype=np.uint8)
     except OSError as error:
         raise unreadable(path, error.strerror, "Check its rights.") from error

@@ -81,7 +81,7 @@ class Recording(Closing):
         max_pixels: int = MAX_PIXELS,
     ) -> None:
         if stamps not in ("header", "log"):
-            raise RecordingError(f"stamps={stamps!r} came; needed is header or log.")
+            raise RecordingError(f"stamps={stamps!r} was given; expected header or log.")
         self.path = path
         self.skipped: dict[str, Skipped] = {}
         self._source = source
@@ -156,7 +156,7 @@ class Recording(Closing):
     def skipped_lines(self) -> list[str]:
         """One sentence for each topic of which something could not be used."""
         return [
-            f"{one_line(topic)}: {skipped.count} not usable, the first {skipped.first}"
+            f"{one_line(topic)}: {skipped.count} unusable messages, the first: {skipped.first}"
             for topic, skipped in sorted(self.skipped.items())
         ]
 
@@ -177,7 +177,7 @@ class Recording(Closing):
             else "A recording with images is needed"
         )
         raise RecordingError(
-            f"{self.path}: no images on {one_line(self._asked.image)}; the recording holds "
+            f"{self.path}: no images on {one_line(self._asked.image)}; the recording contains "
             f"{self._table.described() or 'nothing'}. {remedy}."
         )
 
@@ -232,7 +232,7 @@ class Recording(Closing):
             events = [_restamped(event, message.log_ns) for event in events]
         usable = [event for event in events if _is_in_time(event)]
         if len(usable) < len(events):
-            self._skip(message, "its stamp lies beyond what ROS can say, the year 2038")
+            self._skip(message, "its stamp is after 2038, which ROS cannot represent")
         return usable
 
     def _skip(self, message: RawMessage, why: str) -> None:

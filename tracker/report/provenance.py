@@ -1,4 +1,4 @@
-"""With what was this made? The settings that are not the defaults, versions, the command."""
+"""How was this made? Parameters that differ from the defaults, versions, the command."""
 
 from __future__ import annotations
 

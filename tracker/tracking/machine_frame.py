@@ -1,4 +1,4 @@
-"""The frame as machine code: of which types it is, and where this process has it."""
+"""The compiled frame: its types, and where this process keeps it."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _can_compile() -> bool:
 def machine() -> Machine | None:
     """The machine code of this process; None without numba."""
     if not _can_compile():
-        LOG.warning("numba cannot be used here, so that Python does the tracker's work, slowly.")
+        LOG.warning("numba cannot be used here; the tracker runs as Python, which is slow.")
         return None
     return Machine(compiled_frame)
 

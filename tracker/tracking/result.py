@@ -1,4 +1,4 @@
-"""What does the outside see of everybody?"""
+"""What does the tracker return?"""
 
 from __future__ import annotations
 

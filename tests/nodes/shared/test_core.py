@@ -66,7 +66,7 @@ def test_an_image_waits_for_the_transform_of_its_own_stamp(wire):
     assert wire.detector.stamps_ns == []
     wire.base(START_NS + 1_000_000)
     wire.settle()
-    assert wire.diagnose()["transforms"].message == "the camera is located"
+    assert wire.diagnose()["transforms"].message == "the camera's position is known"
 
 
 def test_an_image_without_transform_waits_no_longer_than_told(wire):

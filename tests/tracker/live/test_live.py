@@ -69,8 +69,8 @@ def test_a_camera_that_breaks_off_is_opened_again(camera):
         for _ in itertools.islice(stream.images(), 3):
             time.sleep(0.05)
     assert camera.opened >= 2
-    assert any("gives no more pictures" in text for text in told)
-    assert any("is there" in text for text in told)
+    assert any("sends no more pictures" in text for text in told)
+    assert any("is open" in text for text in told)
 
 
 def test_only_the_newest_picture_of_a_camera_waits(camera, monkeypatch):

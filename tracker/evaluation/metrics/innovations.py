@@ -21,7 +21,7 @@ from tracker.tracking.sensing.sensor_kinds import BEARING, POSITION, RANGE
 
 @dataclass(frozen=True, eq=False)
 class Innovations(Rows):
-    """K measurements, each held against the person whom it was assigned to.
+    """Innovations of K measurements, each with the person to whom it was assigned.
 
     Attributes:
         stamp_ns: Shape (K,).

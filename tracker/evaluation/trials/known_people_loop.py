@@ -1,4 +1,4 @@
-"""Many trials of people who are known from the start: whose measurement is whose, and where now?
+"""Many trials of people known from the start: association and update, as one loop.
 
 The tracker's own steps for one sensor at the origin: predict, gate, assign, correct. Nobody comes
 or goes, and what is assigned counts in full.

@@ -152,7 +152,7 @@ def _transforms(
 
 
 class _ShownHands:
-    """Stands in for the hand models: it is told who is there, and looks at no picture."""
+    """Replaces the hand models: it gets the truth, and looks at no picture."""
 
     work = None
 

@@ -43,8 +43,8 @@ class InnovationLog:
         """
         if not self._parts:
             raise ConfigError(
-                "No measurement was assigned to anybody; a scenario or recording in which people "
-                "are tracked is needed."
+                "No measurement was assigned to anybody; use a scenario or recording in which "
+                "people are tracked."
             )
         return Innovations.concatenate(*self._parts)
 

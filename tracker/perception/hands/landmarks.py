@@ -24,7 +24,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Landmarks(Rows):
-    """What the landmark model says about regions; row i of each array is region i.
+    """Results of the landmark model; row i of each array is region i.
 
     Attributes:
         points_px: Shape (R, 21, 2): x to the right, y down, in the full image.

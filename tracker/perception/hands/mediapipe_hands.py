@@ -1,4 +1,4 @@
-"""What does MediaPipe itself say? An installed mediapipe 0.10 as the hand detector."""
+"""An installed mediapipe 0.10 as the hand detector."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands in the scan for so long that it must be furniture? Learnt, and unlearnt again.
+"""What has stood still so long that it must be furniture? Learned, and forgotten when it moves.
 
 A chair or a pillar is as wide as a leg. What has stood exactly still for long, and is no customer,
 sustains nobody. The place is free again once a beam has passed through it.
@@ -112,14 +112,14 @@ class Background:
         return np.asarray(-np.logaddexp(0.0, -log_odds))
 
     def spare(self, customers_xy_m: FloatArray, distance_m: float) -> None:
-        """A customer who stands still does not become background; what is one already stays."""
+        """A customer who stands still does not become background; old background stays."""
         places = self._places
         near = (_distances(places.xy_m, customers_xy_m) < distance_m).any(axis=1)
         stood_s = np.where(near & ~places.is_background, 0.0, places.stood_s)
         self._places = replace(places, stood_s=stood_s)
 
     def free(self, xy_m: FloatArray) -> None:
-        """A hand was raised there: whoever stands at these points is somebody."""
+        """A hand was raised there: these points are people, not background."""
         places = self._places
         is_near = (_distances(places.xy_m, xy_m) < STILL_M).any(axis=1)
         stood_s = np.where(is_near, 0.0, places.stood_s)

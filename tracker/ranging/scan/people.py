@@ -123,7 +123,7 @@ def _distance_m(
 
 
 def _is_person_sized(found: Segments, leg_width_min_m: float, body_width_m: float) -> BoolArray:
-    """From a slim leg to a body, and no board.
+    """Whether a segment is as wide as a leg or a body, and not flat like a board.
 
     Two beams show a leg only where they lie as far apart as a trouser leg is wide.
     """
@@ -136,7 +136,7 @@ def _is_person_sized(found: Segments, leg_width_min_m: float, body_width_m: floa
 
 
 def _farthest_m(range_m: FloatArray) -> float:
-    """Range of the farthest thing that is looked at: no room shows more people than the limit."""
+    """Largest range that is searched, so that the number of people stays limited."""
     return float(np.sort(range_m)[_SEGMENTS_MAX - 1]) if len(range_m) > _SEGMENTS_MAX else np.inf
 
 

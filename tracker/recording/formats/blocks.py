@@ -1,4 +1,4 @@
-"""How are messages brought into order that lie in blocks? With few of these in memory at once."""
+"""How are messages in blocks sorted by time, with few blocks in memory?"""
 
 from __future__ import annotations
 

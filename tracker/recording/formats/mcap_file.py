@@ -58,7 +58,7 @@ class McapSource:
         for part in in_order(self._blocks(wanted), self._parts, damage):
             if part.channel not in wanted:
                 if part.channel not in self._layout.channels:
-                    damage.add(part.log_ns, "a message is of no known topic")
+                    damage.add(part.log_ns, "a message belongs to no known topic")
                 continue
             try:
                 data = unpack_message(part.data)
@@ -130,7 +130,7 @@ class McapSource:
         while end + HEAD.size <= len(data):
             opcode, length = HEAD.unpack_from(data, end)
             if not opcode:
-                raise DamagedError("a chunk holds what is no record")
+                raise DamagedError("a chunk contains something that is not a record")
             check_count(count := count + 1)
             body = end + HEAD.size
             end = body + length

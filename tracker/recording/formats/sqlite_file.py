@@ -94,7 +94,7 @@ class SqliteSource:
                 found.append((log_ns, row, key))
                 counts[key] += 1
             else:
-                self._note("a row makes no sense")
+                self._note("a row is invalid")
         self._rows = sorted(found)
         if self._damages and not found:
             raise unreadable(self._path, self._damages[0][1], _REMEDY)
@@ -149,7 +149,7 @@ def _notes(path: Path) -> list[str]:
     with suppress(OSError):
         if log.stat().st_size:
             return [
-                f"{path}: what its recorder wrote last is still in {log.name} and is not read; "
+                f"{path}: its last messages are still in {log.name} and are not read; "
                 f"`sqlite3 {path.name} 'PRAGMA wal_checkpoint'` moves it into the database."
             ]
     return []

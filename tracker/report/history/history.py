@@ -1,4 +1,4 @@
-"""What must be remembered of a whole recording for its pictures and its summary?
+"""What is kept of a whole recording for its pictures and its summary?
 
 Little: memory stays bounded however long the recording is. Paths are thinned, scans fall into a
 grid of fixed size, and beyond `PEOPLE_KEPT` whoever was last seen longest ago leaves (tracks.csv

@@ -1,4 +1,4 @@
-"""What happened in this recording, in one picture? The room from above, and below it the time."""
+"""One picture of a recording: the room from above, and a time line below it."""
 
 from __future__ import annotations
 

@@ -89,7 +89,7 @@ class ReplayReport:
         share = history.frames_raised / max(1, history.frames_processed)
         items = [
             ("people", str(len(history.people) + history.people_dropped), "confirmed customers"),
-            ("raised hands", str(raises), "times that a hand went up"),
+            ("raised hands", str(raises), "raised hands reported"),
             ("hand_raised", f"{share:.0%}", "of the images"),
             ("images", str(history.frames_processed), f"in {history.duration_s:.1f} s"),
         ]
@@ -98,8 +98,8 @@ class ReplayReport:
             items.append(("time per image", f"{median_ms:.0f} ms", "median, on this machine"))
         if episodes is not None:
             found, all_ = len(episodes.found), len(episodes.episodes)
-            items.append(("found", f"{found} of {all_}", "raised hands of the truth"))
-            items.append(("invented", str(len(episodes.invented)), "raised hands of nobody"))
+            items.append(("found", f"{found} of {all_}", "raised hands in truth"))
+            items.append(("invented", str(len(episodes.invented)), "false raises"))
             if episodes.position_error_m is not None:
                 error = f"{episodes.position_error_m:.2f} m"
                 items.append(("position error", error, "median, hand up"))
@@ -108,10 +108,10 @@ class ReplayReport:
 
 def _trouble(problems: tuple[str, ...]) -> tuple[Part, ...]:
     if not problems:
-        return (Text(("Nothing was wrong with the recording.",)),)
+        return (Text(("No problems with the recording.",)),)
     rows = tuple((problem,) for problem in problems)
     marked = frozenset(range(len(rows)))
-    return (Table(("wrong with the recording",), rows, marked=marked),)
+    return (Table(("problems of the recording",), rows, marked=marked),)
 
 
 def _gallery(pictures: tuple[Picture, ...]) -> tuple[Part, ...]:

@@ -98,7 +98,7 @@ def test_memory_is_bounded_over_very_many_people_and_notes(monkeypatch, result_o
 def test_places_before_the_first_transform_are_no_places_of_the_fixed_frame(result_of):
     history = History()
     history.write(result_of(10**9, (1, 1.0, 0.4, True), sensor_pose=None))
-    note = Note(NoteKind.NEW_FIXED_FRAME, "the first transform has come")
+    note = Note(NoteKind.NEW_FIXED_FRAME, "the first transform was received")
     pose = np.array([10.0, 5.0, 0.0])
     history.write(result_of(2 * 10**9, (2, 11.0, 5.4, True), sensor_pose=pose, notes=(note,)))
     early, late = history.people.values()
