@@ -32,7 +32,7 @@ from tracker.gesture import Gesture
 from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan, shown_ns
 from tracker.locating.picture_camera import PictureCameras, configured_camera
 from tracker.notes import Note, NoteKind
-from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.detector import HandDetector, Hints
 from tracker.perception.gestures.customers import CustomerGestures
 from tracker.perception.gestures.reading import GestureReader
 from tracker.perception.upright import Turn, upright_turn
@@ -70,6 +70,9 @@ class Pipeline:
             pass one around tf2's.
         watch: Passed on to the tracker.
         image_topic: Where images come from; tells whether they are rectified (`image_form`).
+
+    Attributes:
+        model_runs: How many model runs an image may take in perception; None is as configured.
     """
 
     def __init__(
@@ -87,6 +90,7 @@ class Pipeline:
 
             detector = open_detector(self.config)
         self.detector = detector
+        self.model_runs: int | None = None
         self.tracker = PersonTracker(self.config, watch=watch)
         self.room = WaitingRoom(self.config.processing_rate, transforms)
         self.camera = configured_camera(self.config)
@@ -238,14 +242,14 @@ class Pipeline:
         )
         self._notes += map_notes
         people = scan_people(scan, self.config, room)
-        piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
         self._turn_upright(fixed_from_camera)
-        if piecewise is not None and place.is_located:
+        hints = Hints(model_runs=self.model_runs)
+        if place.is_located:
             seen = [people.xy_m] if sight is None else [people.xy_m, sight.bodies.people.xy_m]
             known_xy_m = np.concatenate([self.tracker.positions_m, *seen])
             expected_px = expected_hands(known_xy_m, self.camera, fixed_from_camera)
-            piecewise.expect(self._turn.boxes(expected_px, size))
-        upright_hands = self.detector.find(self._turn.picture(image))
+            hints = replace(hints, expected_px=self._turn.boxes(expected_px, size))
+        upright_hands = self.detector.find(self._turn.picture(image), hints)
         upright_hands = self._gestures.read(image.stamp_ns, upright_hands, self.config)
         hands = self._turn.hands_back(upright_hands, size)
         tracked = self.tracker.people
@@ -309,7 +313,7 @@ class Pipeline:
             scan=scan if scan is not None or sight is None else sight.bodies.slice,
             notes=tuple(self._notes),
             frame_id=place.frame_id,
-            work=piecewise.work if piecewise is not None else None,
+            work=self.detector.work,
             waiting_list=self.tracker.calls.now,
             room_map=None if room is None else room.located,
         )

@@ -149,13 +149,10 @@ class TransformBuffer:
         for samples in self._moving.values():
             del samples[bisect_right(samples, stamp_ns, key=_stamp) :]
 
-    def clear(self, *, keep_static: bool = True) -> None:
-        """Forget the moving transforms (after a jump of the clock), or all of them."""
+    def clear(self) -> None:
+        """Forget the moving transforms, after a jump of the clock."""
         for child in list(self._moving):
             del self._moving[child], self._parent[child]
-        if not keep_static:
-            self._static.clear()
-            self._parent.clear()
 
     def _chain(self, frame: str) -> list[str]:
         chain = [frame]

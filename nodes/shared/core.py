@@ -34,7 +34,7 @@ from tracker.messages import Encoded, decode, encode
 from tracker.messages.header_peek import peek_header
 from tracker.messages.types import deserialize
 from tracker.notes import NoteKind
-from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.detector import HandDetector
 from tracker.perception.gestures.customers import GestureNews
 from tracker.pipeline import Pipeline
 from tracker.service import Answer, Command, Verb
@@ -72,8 +72,8 @@ class NodeCore:
         log: Tells the user something.
         now_ns: The node's clock, simulated or not: the one of the stamps.
         detector: Finds hands; by default MediaPipe's models.
-        transforms: By default a buffer of the project's own, filled by `receive`. A shell that
-            passes another one (around tf2's) fills it itself and calls `heard_transforms`.
+        transforms: By default a buffer of the project's own, filled by `receive`. A shell may
+            pass another one, around tf2's.
         topic_names: Where each input is listened to, for words; by default the unmapped names.
         links: What the wire knows of who publishes the inputs; asked for every report.
         steady_ns: A clock that never jumps.
@@ -166,11 +166,6 @@ class NodeCore:
             self._receive_image(message)
         else:
             self._inbox.put(item, message)
-
-    def heard_transforms(self, *, is_static: bool = False) -> None:
-        """Transforms have come to a buffer that the shell fills itself."""
-        self._diagnostics.heard(Input.STATIC_TRANSFORMS if is_static else Input.TRANSFORMS)
-        self._inbox.wake()
 
     def enable(self, is_enabled: bool) -> str:
         """Process images from now on, or ignore them and forget everybody.
@@ -373,11 +368,10 @@ class NodeCore:
 
     def _pace(self, result: FrameResult) -> None:
         """Reduce the search before images are lost, and increase it again."""
-        detector = self._pipeline.detector
-        if result.work is not None and isinstance(detector, PiecewiseDetector):
+        if result.work is not None:
             busy_share = self._busy_s * self._config.processing_rate
             most = self._config.search_regions_per_frame
-            detector.set_budget(self._budget.after(result.work, busy_share, most))
+            self._pipeline.model_runs = self._budget.after(result.work, busy_share, most)
 
     def _reset(self, reason: str) -> None:
         self._pipeline.reset()

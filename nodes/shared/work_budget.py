@@ -10,7 +10,7 @@ _TOO_BUSY, _AT_EASE = 0.8, 0.5
 
 
 class WorkBudget:
-    """Follows the measured times; counted in model runs, as `PiecewiseDetector.set_budget`."""
+    """Follows the measured times; counted in model runs, as `Hints.model_runs`."""
 
     def __init__(self) -> None:
         self._runs: int | None = None

@@ -198,12 +198,10 @@ def test_a_child_that_changes_its_parent_forgets_where_it_was():
     assert buffer.lookup("map", "base", 2 * SECOND).translation_m[0] == 50.0
 
 
-def test_clearing_keeps_the_static_transforms_unless_told_otherwise():
+def test_clearing_keeps_the_static_transforms():
     buffer = buffer_with(moving(1.0, 1.0), static("base", "laser", RigidTransform()))
     buffer.clear()
     assert buffer.frames == {"base", "laser"}
-    buffer.clear(keep_static=False)
-    assert buffer.frames == set()
 
 
 def test_leading_slashes_of_frame_names_do_not_matter():

@@ -3,36 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tracker.containers.arrays import (
-    COUNTS,
-    FLAGS,
-    NUMBERS,
-    BoolArray,
-    FloatArray,
-    IntArray,
-    check_rows,
-    select,
-)
-
-_LAYOUT = {
-    "landmarks_px": (NUMBERS, (21, 2)),
-    "score": (NUMBERS, ()),
-    "right": (NUMBERS, ()),
-    "raised": (FLAGS, ()),
-    "raise_measure": (NUMBERS, ()),
-    "torso_px": (NUMBERS, (2,)),
-    "refusal": (COUNTS, ()),
-    "seated": (NUMBERS, ()),
-    "gesture": (COUNTS, ()),
-    "wrist_only": (FLAGS, ()),
-}
+from tracker.containers.arrays import BoolArray, FloatArray, IntArray
+from tracker.containers.rows import Column, Rows
 
 
 class Refusal(IntEnum):
@@ -76,7 +54,7 @@ _WORDS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Hands:
+class Hands(Rows):
     """Every hand found in one image; row i of each array is the same hand.
 
     Attributes:
@@ -100,52 +78,16 @@ class Hands:
             are assumed. None means False for all.
     """
 
-    landmarks_px: FloatArray
+    landmarks_px: Annotated[FloatArray, Column((21, 2))]
     score: FloatArray
     right: FloatArray
     raised: BoolArray
     raise_measure: FloatArray
-    torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
-    refusal: IntArray = None  # type: ignore[assignment]  # 0 takes its place
-    seated: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
-    gesture: IntArray = None  # type: ignore[assignment]  # 0 takes its place
-    wrist_only: BoolArray = None  # type: ignore[assignment]  # False takes its place
-
-    def __post_init__(self) -> None:
-        count = len(self.landmarks_px)
-        unknown: dict[str, NDArray[Any]] = {
-            "torso_px": np.full((count, 2), np.nan),
-            "seated": np.full(count, np.nan),
-            "refusal": np.zeros(count, np.int64),
-            "gesture": np.zeros(count, np.int64),
-            "wrist_only": np.zeros(count, np.bool_),
-        }
-        for name, value in unknown.items():
-            if getattr(self, name) is None:
-                object.__setattr__(self, name, value)
-        check_rows(self, count, _LAYOUT)
-
-    def __len__(self) -> int:
-        return len(self.score)
-
-    def __getitem__(self, rows: Any) -> Hands:
-        return select(self, rows)
-
-    @staticmethod
-    def none() -> Hands:
-        """No hand at all."""
-        nothing = np.zeros(0)
-        return Hands(np.zeros((0, 21, 2)), nothing, nothing, nothing.astype(bool), nothing)
-
-    @staticmethod
-    def concatenate(*parts: Hands) -> Hands:
-        """Join batches of one image, rows in the order given."""
-        return Hands(
-            **{
-                item.name: np.concatenate([getattr(part, item.name) for part in parts])
-                for item in fields(Hands)
-            }
-        )
+    torso_px: Annotated[FloatArray, Column((2,), missing=np.nan)] = None  # type: ignore[assignment]
+    refusal: Annotated[IntArray, Column(missing=0)] = None  # type: ignore[assignment]
+    seated: Annotated[FloatArray, Column(missing=np.nan)] = None  # type: ignore[assignment]
+    gesture: Annotated[IntArray, Column(missing=0)] = None  # type: ignore[assignment]
+    wrist_only: Annotated[BoolArray, Column(missing=False)] = None  # type: ignore[assignment]
 
     @property
     def wrist_px(self) -> FloatArray:

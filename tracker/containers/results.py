@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
-from tracker.containers.arrays import (
-    COUNTS,
-    FLAGS,
-    NUMBERS,
-    BoolArray,
-    FloatArray,
-    IntArray,
-    check_rows,
-    check_stamp,
-    frozen,
-)
+from tracker.containers.arrays import BoolArray, FloatArray, IntArray, check_stamp, frozen
 from tracker.containers.hands import Hands
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
 from tracker.containers.occupancy_grid import LocatedMap
+from tracker.containers.rows import Column, Rows
 from tracker.containers.tracks import Tracks
 from tracker.containers.waiting_list import WaitingList
 from tracker.errors import ShapeError
@@ -54,16 +46,8 @@ class Pose:
             )
 
 
-_TRUTH = {
-    "id": (COUNTS, ()),
-    "xy_m": (NUMBERS, (2,)),
-    "hand_up": (FLAGS, ()),
-    "in_view": (FLAGS, ()),
-}
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Truth:
+@dataclass(frozen=True, eq=False)
+class Truth(Rows):
     """Where simulated people really are; it never reaches the pipeline, only the evaluation.
 
     Attributes:
@@ -76,15 +60,9 @@ class Truth:
 
     stamp_ns: int
     id: IntArray
-    xy_m: FloatArray
+    xy_m: Annotated[FloatArray, Column((2,))]
     hand_up: BoolArray
     in_view: BoolArray
-
-    def __post_init__(self) -> None:
-        check_rows(self, len(self.id), _TRUTH)
-
-    def __len__(self) -> int:
-        return len(self.id)
 
 
 @dataclass(frozen=True, slots=True)

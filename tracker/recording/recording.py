@@ -14,7 +14,7 @@ from tracker.containers import CameraImage, Scan
 from tracker.errors import RecordingError, TrackerError
 from tracker.messages import DECODABLE, Event, types
 from tracker.messages.picture_size import MAX_PIXELS
-from tracker.recording.sources import RawMessage, Source, TopicInfo, seconds_into
+from tracker.recording.sources import RawMessage, Reading, Source, TopicInfo, seconds_into
 from tracker.recording.topics import IMAGES, TRANSFORMS, Topics, TopicTable
 from tracker.wording import listing, one_line
 
@@ -222,11 +222,8 @@ class Recording(Closing):
 
     def _read(self, message: RawMessage, *, is_static: bool = False) -> list[Event]:
         try:
-            events = self._source.read(
-                message,
-                is_static=is_static,
-                max_pixels=self._max_pixels,
-                is_depth=self._is_of_depth(message.topic),
+            events = message.read(
+                Reading(self._max_pixels, is_static, self._is_of_depth(message.topic))
             )
         except TrackerError as error:
             self._skip(message, str(error))
@@ -278,9 +275,7 @@ class Recording(Closing):
                 self._used() & {self.read_topics.image, self.read_topics.scan}
             ):
                 with suppress(TrackerError):  # counted by `events`
-                    for event in self._source.read(
-                        message, is_static=False, max_pixels=self._max_pixels
-                    ):
+                    for event in message.read(Reading(self._max_pixels)):
                         if isinstance(event, CameraImage | Scan):
                             offsets_s.append((event.stamp_ns - message.log_ns) / 1e9)
                 if len(offsets_s) >= _STAMPS_COMPARED:

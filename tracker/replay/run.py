@@ -97,7 +97,7 @@ def replay(
     """
     config, out = config or Config(), Path(out)
     problems = Problems()
-    history = History()
+    history = History(config)
     evaluation = EpisodeEvaluation()
     has_truth, frames_seen = False, 0
     check_inputs_stay([Path(source)], replay_files(out))

@@ -166,12 +166,10 @@ class Section:
     Attributes:
         title: Its heading.
         parts: From top to bottom; a section without any is left out.
-        is_folded: Opened by the reader; printed open.
     """
 
     title: str
     parts: tuple[Part, ...]
-    is_folded: bool = False
 
 
 @dataclass(frozen=True, slots=True)

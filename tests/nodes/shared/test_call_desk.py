@@ -86,7 +86,7 @@ def test_a_node_that_is_switched_off_keeps_who_waits(wire):
     assert words(anna) == ["waiting", "approach"]
     wire.core.reset("test")
     wire.core.enable(True)
-    wire.detector.find = lambda image: Hands.none()
+    wire.detector.find = lambda image, hints: Hands.none()
     show(wire, range(20, 22))
     assert len(wire.messages(Output.WAITING_LIST)[-1].detections) == 0
 

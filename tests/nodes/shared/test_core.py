@@ -199,8 +199,8 @@ def test_what_a_customer_says_is_told_once_and_taken_back(wire, monkeypatch):
         "fist", 1, np.random.default_rng(5), turn_max_deg=3.0, size_px=(20.0, 20.1)
     )  # fmt: skip
 
-    def shown(image):
-        return replace(see(image), landmarks_px=fist.landmarks_px + np.array([32.0, 24.0]))
+    def shown(image, hints):
+        return replace(see(image, hints), landmarks_px=fist.landmarks_px + np.array([32.0, 24.0]))
 
     monkeypatch.setattr(wire.detector, "find", shown)
     play(wire, 31)

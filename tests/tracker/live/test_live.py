@@ -17,7 +17,9 @@ PERIOD_NS = 100_000_000
 
 
 class OneHand:
-    def find(self, image):
+    work = None
+
+    def find(self, image, hints=None):
         landmarks = np.full((1, 21, 2), (32.0, 24.0))
         landmarks[:, 12, 1] -= 6.0
         one = np.ones(1)

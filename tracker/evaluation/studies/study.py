@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from scipy.stats import norm
@@ -20,6 +20,7 @@ from tracker.evaluation.trials.scenario import (
     KnownPeopleScenario,
     PeopleScenario,
     ScanScenario,
+    Scenario,
 )
 
 #: A filter is judged once its first second, in which it knows what it was told, is over.
@@ -56,15 +57,38 @@ class Figure:
         return self.expected[0] <= self.value <= self.expected[1]
 
 
+_Scenario = TypeVar("_Scenario", bound=Scenario)
+
+
 @dataclass(frozen=True, eq=False)
-class FilterStudy:
-    """Trials of a `FilterScenario`.
+class StudyOf(Generic[_Scenario]):
+    """Trials of a scenario.
 
     Attributes:
         name: Of the scenario.
         scenario: What happened.
         config: The tracker's parameters.
         seed: Of the study.
+        rows: Figures of each trial, shape (B,), by name.
+    """
+
+    name: str
+    scenario: _Scenario
+    config: Config
+    seed: int
+    rows: dict[str, FloatArray]
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return len(next(iter(self.rows.values())))
+
+
+@dataclass(frozen=True, eq=False)
+class FilterStudy(StudyOf[FilterScenario]):
+    """Trials of a `FilterScenario`.
+
+    Attributes:
         rows: Figures of each trial, shape (B,): `mse_m2`, `bound_m2` (along the trial's own path)
             and `mean_nees`, means over the frames once settled; `final_error_m`, `final_nees` at
             the last frame.
@@ -73,19 +97,9 @@ class FilterStudy:
         information: Shape (T, 2, 2), mean over the trials.
     """
 
-    name: str
-    scenario: FilterScenario
-    config: Config
-    seed: int
-    rows: dict[str, FloatArray]
     squared_error_m2: FloatArray
     nees: FloatArray
     information: FloatArray
-
-    @property
-    def trials(self) -> int:
-        """How many."""
-        return len(self.rows["mse_m2"])
 
     @cached_property
     def bound_m2(self) -> FloatArray:
@@ -132,27 +146,12 @@ class FilterStudy:
 
 
 @dataclass(frozen=True, eq=False)
-class KnownPeopleStudy:
+class KnownPeopleStudy(StudyOf[KnownPeopleScenario]):
     """Trials of a `KnownPeopleScenario`.
 
     Attributes:
-        name: Of the scenario.
-        scenario: What happened.
-        config: The tracker's parameters.
-        seed: Of the study.
         rows: Figures of each trial, shape (B,), from `known_people.known_people_rows`.
     """
-
-    name: str
-    scenario: KnownPeopleScenario
-    config: Config
-    seed: int
-    rows: dict[str, FloatArray]
-
-    @property
-    def trials(self) -> int:
-        """How many."""
-        return len(self.rows["mse_m2"])
 
     @property
     def figures(self) -> tuple[Figure, ...]:
@@ -168,27 +167,12 @@ class KnownPeopleStudy:
 
 
 @dataclass(frozen=True, eq=False)
-class PeopleStudy:
+class PeopleStudy(StudyOf[PeopleScenario | ScanScenario]):
     """Trials of a `PeopleScenario` or a `ScanScenario`.
 
     Attributes:
-        name: Of the scenario.
-        scenario: What happened.
-        config: The tracker's parameters.
-        seed: Of the study.
         rows: Figures of each trial, shape (B,), by the names of `metrics.scores.score_trial`.
     """
-
-    name: str
-    scenario: PeopleScenario | ScanScenario
-    config: Config
-    seed: int
-    rows: dict[str, FloatArray]
-
-    @property
-    def trials(self) -> int:
-        """How many."""
-        return len(self.rows["gospa_m"])
 
     @property
     def remark(self) -> str:

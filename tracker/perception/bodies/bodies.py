@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from typing import Annotated
 
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray
-from tracker.errors import ShapeError
+from tracker.containers.rows import Column, Rows
 from tracker.perception.regions import first_of_each
-from tracker.perception.rows import Rows
 
 #: Points seen with less are taken for unknown; a guess between 0.3, usual for COCO's models, and
 #: MediaPipe's 0.5.
@@ -64,7 +64,7 @@ HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
 KNEES = [Joint.LEFT_KNEE, Joint.RIGHT_KNEE]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Bodies(Rows):
     """People found in one picture; row i of each array is the same person.
 
@@ -81,34 +81,16 @@ class Bodies(Rows):
         ShapeError: The arrays disagree in shape.
     """
 
-    points_px: FloatArray
-    visibility: FloatArray
+    points_px: Annotated[FloatArray, Column((17, 2))]
+    visibility: Annotated[FloatArray, Column((17,))]
     score: FloatArray
     age_s: FloatArray
-    alignment_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
-
-    def __post_init__(self) -> None:
-        count = len(self.score)
-        if self.alignment_px is None:
-            object.__setattr__(self, "alignment_px", np.full((count, 2, 2), np.nan))
-        shapes = [np.shape(getattr(self, name)) for name in self.__slots__]
-        needed = [(count, len(Joint), 2), (count, len(Joint)), (count,), (count,), (count, 2, 2)]
-        if shapes != needed:
-            raise ShapeError(f"Bodies disagree in shape: {shapes}; expected (P, 17, 2) and so on.")
-        for name in self.__slots__:
-            view = np.asarray(getattr(self, name), dtype=np.float64).view()
-            view.flags.writeable = False
-            object.__setattr__(self, name, view)
+    alignment_px: Annotated[FloatArray, Column((2, 2), missing=np.nan)] = None  # type: ignore[assignment]  # NaN takes its place
 
     @staticmethod
     def seen_now(points_px: FloatArray, visibility: FloatArray, score: FloatArray) -> Bodies:
         """Bodies of this very image."""
         return Bodies(points_px, visibility, score, np.zeros(len(score)))
-
-    @staticmethod
-    def none() -> Bodies:
-        """Nobody at all."""
-        return Bodies.seen_now(np.zeros((0, 17, 2)), np.zeros((0, 17)), np.zeros(0))
 
     def grown_older(self, passed_s: float) -> Bodies:
         """The same people, as long after."""

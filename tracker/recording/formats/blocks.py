@@ -105,6 +105,27 @@ def placed(blocks: list[Block], first_ns: int, last_ns: int) -> list[Block]:
     return [block for _, _, block in sorted(rows, key=lambda row: row[:2])]
 
 
+def damage_of(
+    lost_at: list[int], is_finished: bool, blocks: list[Block], first_ns: int, last_ns: int
+) -> Damage:
+    """What a walk over the file has found out already.
+
+    Args:
+        lost_at: Offsets of records that make no sense.
+        is_finished: The file has its end.
+        blocks: From `placed`.
+        first_ns: First log time of the recording.
+        last_ns: Last.
+    """
+    damage = Damage()
+    for offset in lost_at:
+        before = [block.end_ns for block in blocks if block.offset < offset]
+        damage.add(max(before, default=first_ns), "records are damaged")
+    if not is_finished:
+        damage.cut(last_ns)
+    return damage
+
+
 def in_order(
     blocks: list[Block], parts_of: Callable[[Block], list[Part]], damage: Damage
 ) -> Iterator[Part]:

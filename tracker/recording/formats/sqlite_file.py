@@ -10,7 +10,6 @@ from pathlib import Path
 from urllib.parse import quote
 
 from tracker.errors import RecordingError
-from tracker.messages import Event, decode
 from tracker.recording.formats.damage import Damage
 from tracker.recording.formats.unpacking import DamagedError, unpack_message
 from tracker.recording.sources import RawMessage, topics_of, unreadable
@@ -77,18 +76,6 @@ class SqliteSource:
             yield RawMessage(topic, type_name, log_ns, data)
         counted = {topic: info.count for topic, info in self.topics.items() if topic in topics}
         damage.tell(self._path, self.start_ns, counted, read)
-
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """As `Source.read`."""
-        return decode(
-            message.type_name,
-            message.data,
-            is_static=is_static,
-            max_pixels=max_pixels,
-            is_depth=is_depth,
-        )
 
     def close(self) -> None:
         """As `Source.close`."""

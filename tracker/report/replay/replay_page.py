@@ -10,10 +10,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult
 from tracker.evaluation.metrics.raised_hands.episode_report import EpisodeReport
 from tracker.report.history.history import History, Person
-from tracker.report.history.states import States
 from tracker.report.page import Facts, Gallery, Page, Part, Picture, Section, Table, Text
-from tracker.report.plots.state_timeline import draw_state_timeline
-from tracker.report.plots.trail_map import draw_trail_map
 from tracker.report.provenance import provenance_section, settings_section
 from tracker.report.replay.episode_table import episode_table
 from tracker.report.replay.moments import Moments
@@ -33,13 +30,11 @@ class ReplayReport:
 
     def __init__(self, config: Config) -> None:
         self._config = config
-        self._states = States(config)
         self._moments = Moments(config)
         self._times = StageTimes()
 
     def watch(self, image: CameraImage, result: FrameResult, busy_s: float) -> None:
         """Take in an image, what it led to, and how long the pipeline took for it."""
-        self._states.write(result)
         self._moments.write(image, result)
         self._times.write(result, busy_s)
 
@@ -71,23 +66,15 @@ class ReplayReport:
         if episodes is not None:
             people.append(Table.from_rich(episode_table(episodes)))
         picture = Picture(
-            overview.read_bytes(), "image/png", "Where hands were raised, and below it when."
-        )
-        trails = Picture.plot(
-            draw_trail_map(history, self._states),
-            "The path of each person, from above, with 2-sigma ellipses of the position.",
-            "png",
-        )
-        timeline = Picture.plot(
-            draw_state_timeline(history, self._states),
-            "Each person's existence (a probability), raised hand, fresh pose, and service.",
+            overview.read_bytes(),
+            "image/png",
+            "Where hands were raised, and below it when; each person's existence (a probability), "
+            "fresh pose, and service.",
         )
         sections = (
             Section("In short", (self._headline(history, episodes), *_trouble(problems))),
-            Section("Overview", (picture,)),
+            Section("Map and time line", (picture,)),
             Section("People", tuple(people) or (Text(("Nobody was confirmed.",)),)),
-            Section("Map", (trails,)),
-            Section("Time line", (timeline,)),
             Section("Pictures", _gallery(self._moments.pictures)),
             Section("Remarks", _remarks(history, remarks)),
             Section("Time per image", (self._times.table(),)),

@@ -2,10 +2,10 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks._annotated_scans import read_annotated_scans, score_clusters
 from tracker.errors import RecordingError
-from tracker.evaluation.recordings.annotated_scans import read_annotated_scans, score_clusters
 
-SCANS = Path(__file__).parents[4] / "../shared/data/scans"
+SCANS = Path(__file__).parents[2] / "../shared/data/scans"
 MARKED = SCANS / "leg_tracker__positive_1_extracted.bag"
 
 
