@@ -14,6 +14,7 @@ import numpy as np
 from tracker import CameraImage, Config, Hands, Pipeline
 from tracker.containers import DepthImage
 from tracker.messages import Event, decode, encode
+from tracker.perception.detector import Hints
 from tracker.simulation import load_scene, simulate
 from tracker.simulation.scene import Depth
 
@@ -30,7 +31,9 @@ CAMERAS = [
 class OneHand:
     """Sees one raised hand and its owner, always in the same place."""
 
-    def find(self, image: CameraImage) -> Hands:
+    work = None
+
+    def find(self, image: CameraImage, hints: Hints) -> Hands:
         """As every detector."""
         landmarks = np.tile(np.array([[320.0, 150.0]]), (1, 21, 1))
         landmarks[0, 12, 1] -= 80.0

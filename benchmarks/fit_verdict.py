@@ -23,12 +23,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks._verdict_fit import fit_weights
 from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, ImageArray, IntArray
 from tracker.evaluation.detection.clip_study import read_clips
 from tracker.evaluation.detection.looks import jittered_looks
 from tracker.evaluation.detection.scenes import caller_scene, draw_conditions, idlers_scene
-from tracker.evaluation.detection.verdict_fit import fit_weights
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.perception import open_detector
 from tracker.perception.call_finder import CallFinder

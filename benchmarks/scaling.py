@@ -104,7 +104,7 @@ def main() -> None:
             name: measure(EMPTY_UNITS, lambda crew=crew: list(run_in_order(nothing, crew)))
             for name, crew in crews.items()
         }
-        add_rows(table, "units of nothing", EMPTY_UNITS, empty)
+        add_rows(table, "empty units", EMPTY_UNITS, empty)
     Console().print(table)
 
 

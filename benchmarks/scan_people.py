@@ -17,8 +17,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks._annotated_scans import read_annotated_scans, score_clusters
 from tracker import Config
-from tracker.evaluation.recordings.annotated_scans import read_annotated_scans, score_clusters
 from tracker.geometry import RigidTransform
 from tracker.ranging import Background, locate_scan, scan_people
 

@@ -57,7 +57,7 @@ class DdsHandDetector:
         config: Every parameter.
         namespace: The node's.
         remaps: Rules `from:=to`.
-        use_sim_time: Take the time from /clock.
+        use_sim_time: Use the time from /clock.
         remarks: Warnings that its log begins with.
 
     Raises:
@@ -125,7 +125,7 @@ class DdsHandDetector:
         """
         self._core.start()
         self._spinner.start()
-        self._log("info", f"{self._node.names.full_node_name} is up, without ROS.")
+        self._log("info", f"{self._node.names.full_node_name} is running, without ROS.")
         went_well = True
         while went_well and not stop.wait(REPORT_PERIOD_S):
             self._core.diagnose()
@@ -191,27 +191,34 @@ def command(
         typer.Option(
             "--params-file",
             metavar="FILE",
-            help="ROS parameter file, as config/hand_detector.yaml; may be repeated.",
+            help="ROS parameter file, such as config/hand_detector.yaml. May be repeated.",
         ),
     ] = None,
     param: Annotated[
         list[str] | None,
         typer.Option(
-            "--param", "-p", metavar="SETTING", help="One parameter: -p processing_rate:=8.0."
+            "--param",
+            "-p",
+            metavar="SETTING",
+            help="Set one parameter: -p processing_rate:=8.0. May be repeated.",
         ),
     ] = None,
     remap: Annotated[
         list[str] | None,
         typer.Option(
-            "--remap", "-r", metavar="FROM:=TO", help="One name: -r image_raw:=/camera/image_raw."
+            "--remap",
+            "-r",
+            metavar="FROM:=TO",
+            help="Remap one name: -r image_raw:=/camera/image_raw. May be repeated.",
         ),
     ] = None,
-    namespace: Annotated[str, typer.Option(help="Of the node and its relative names.")] = "/",
+    namespace: Annotated[str, typer.Option(help="Namespace of the node and of its topics.")] = "/",
     use_sim_time: Annotated[
-        bool, typer.Option("--use-sim-time", help="Take the time from /clock.")
+        bool, typer.Option("--use-sim-time", help="Use the time from /clock.")
     ] = False,
     ros_args: Annotated[
-        bool, typer.Option("--ros-args", help="Understood and not needed.")
+        bool,
+        typer.Option("--ros-args", help="Accepted because ROS 2 tools pass it; it has no effect."),
     ] = False,
     version: VersionOption = False,
 ) -> None:

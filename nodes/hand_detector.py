@@ -49,11 +49,11 @@ class HandDetector(Node):
 
     @property
     def is_alive(self) -> bool:
-        """Whether the node still works; False after a mistake of ours."""
+        """Whether the node still works; False after an error in the worker."""
         return self._wiring is None or self._wiring.core.is_alive
 
     def close(self) -> None:
-        """Stop working, and take back a raised hand that is latched; once is enough."""
+        """Stop working, and publish that no hand is up; can be called again."""
         # Taken away first: a core that is stopped on purpose is no dead one.
         wiring, self._wiring = self._wiring, None
         if wiring is not None:
@@ -103,7 +103,7 @@ def _spin(make_node: Callable[[], HandDetector], is_over: threading.Event) -> in
     while not is_over.wait(0.5) and node.is_alive and spinning.is_alive():
         pass
     if not is_over.is_set():
-        node.get_logger().fatal("The worker has ended by a mistake; it is printed above.")
+        node.get_logger().fatal("The worker thread stopped with an error, which is printed above.")
     executor.shutdown()
     spinning.join()
     node.destroy_node()

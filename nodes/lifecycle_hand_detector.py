@@ -1,4 +1,4 @@
-"""The same node with a managed life: configure loads the models, activate listens."""
+"""The same node as a lifecycle node: configure loads the models, activate subscribes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class LifecycleHandDetector(LifecycleNode):
 
     @property
     def is_alive(self) -> bool:
-        """Whether the node still works; False after a mistake of ours."""
+        """Whether the node still works; False after an error in the worker."""
         return self._wiring is None or self._wiring.core.is_alive
 
     def close(self) -> None:

@@ -54,19 +54,19 @@ def test_a_command_of_the_documentation_is_there_with_its_options(words):
     assert named <= known
 
 
-def test_every_option_of_live_stands_in_the_readme():
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+def test_every_option_of_live_stands_in_the_documentation():
+    running = (ROOT / "docs/running.md").read_text(encoding="utf-8")
     for item in get_command(app).commands["live"].params:
         options = [*item.opts, *item.secondary_opts] if item.opts[0].startswith("-") else []
-        assert not options or any(f"`{option}" in readme for option in options), item.name
+        assert not options or any(f"`{option}" in running for option in options), item.name
 
 
-def test_every_topic_that_a_replay_writes_stands_in_the_readme():
+def test_every_topic_that_a_replay_writes_stands_in_the_documentation():
     source = (ROOT / "tracker/replay/outputs.py").read_text(encoding="utf-8")
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    running = (ROOT / "docs/running.md").read_text(encoding="utf-8")
     names = re.findall(r'"/\{NODE_NAME\}/(\w+)"', source)
     assert {"tracks", "waiting_list"} <= set(names)
-    assert [name for name in names if f"`/hand_detector/{name}`" not in readme] == []
+    assert [name for name in names if f"`/hand_detector/{name}`" not in running] == []
 
 
 def targets():

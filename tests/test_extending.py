@@ -181,13 +181,13 @@ def test_a_measurement_is_a_raised_hand_unless_it_says_otherwise():
 
 
 def test_bystanders_are_among_the_people_and_customers_above_0(run):
-    found = run("Everybody, and who has called")
+    found = run("Customers and bystanders")
     assert found["bystanders"].mean[0, :2] == pytest.approx([2.0, 1.0], abs=0.1)
     assert found["customers"].mean[0, :2] == pytest.approx([4.0, -1.0], abs=0.1)
 
 
 def test_what_cannot_be_used_is_said(run):
-    found = run("What cannot be used")
+    found = run("Invalid measurements")
     assert "neither bearing nor range" in found["message"]
     assert found["tracks"].mean[0, 0] > 1.9
 

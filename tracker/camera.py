@@ -20,7 +20,6 @@ _SHAPE_SHARE = 0.01
 #: large are 0.1 off.
 _OFF_MIDDLE_SHARE = 0.08
 #: Points between the principal point and the picture's edge that are asked where they look.
-_SPAN_STEPS = 256
 
 
 class Sensor(NamedTuple):
@@ -84,8 +83,8 @@ class CameraModel:
         if not np.all(np.isfinite(numbers)) or self.fx <= 0 or self.fy <= 0:
             raise ConfigError(
                 f"Camera intrinsics fx {self.fx}, fy {self.fy}, cx {self.cx}, cy {self.cy}, "
-                f"distortion {list(self.distortion)} came; "
-                "needed are finite numbers and positive focal lengths. An uncalibrated camera "
+                f"distortion {list(self.distortion)} are invalid; expected finite numbers and "
+                "positive focal lengths. An uncalibrated camera "
                 "sends zeros: calibrate it, or set use_camera_info: false."
             )
         self.lens  # noqa: B018  # an unknown one is refused here, not at the first picture
@@ -116,8 +115,8 @@ class CameraModel:
             what = "a region of interest" if self.sensor is not None else "pictures"
             raise ConfigError(
                 f"Intrinsics of {what} of {self.width}x{self.height} came with a picture of "
-                f"{width}x{height}, which is no scaled copy; needed are the intrinsics of that "
-                "size. Mend the driver's CameraInfo (width, height, binning, roi), or set "
+                f"{width}x{height}, which is not a scaled copy; expected the intrinsics of that "
+                "size. Correct the driver's CameraInfo (width, height, binning, roi), or set "
                 "use_camera_info: false and camera_fx, camera_fy, camera_cx, camera_cy, "
                 "camera_width, camera_height."
             )
@@ -156,7 +155,7 @@ class CameraModel:
         """
         if self.rectified is None:
             raise ConfigError(
-                "A CameraInfo without P came; it tells how images are rectified. Calibrate the "
+                "The CameraInfo has no P, which says how images are rectified. Calibrate the "
                 "camera, or set image_form: raw."
             )
         return CameraModel(
@@ -187,39 +186,6 @@ class CameraModel:
         if self.sensor is not None:
             return self.sensor
         return Sensor(0.0, 0.0, self.width or np.nan, self.height or np.nan)
-
-    def undistort(self, pixels: ArrayLike) -> FloatArray:
-        """Pixels as an ideal pinhole camera with the same intrinsics would see them.
-
-        Args:
-            pixels: Shape (N, 2): column and row in the picture.
-
-        Returns:
-            Shape (N, 2); NaN beyond the lens's range, and where no pinhole camera sees.
-        """
-        forward, left, up = self.rays(pixels).T
-        ahead = np.where(forward > 0.0, forward, np.nan)
-        return np.column_stack([self.cx - self.fx * left / ahead, self.cy - self.fy * up / ahead])
-
-    def horizontal_span_rad(self, width_px: int) -> tuple[float, float]:
-        """Bearings of the right and the left end of what the picture shows beside the axis.
-
-        Where the lens ends before the picture does, as in a fisheye's circle, the lens's.
-
-        Args:
-            width_px: Of the picture.
-
-        Returns:
-            Counter-clockwise from the optical axis: the right end's, then the left end's.
-        """
-        right_rad, left_rad = (self._end_rad(edge_px) for edge_px in (float(width_px), 0.0))
-        return right_rad, left_rad
-
-    def _end_rad(self, edge_px: float) -> float:
-        columns = np.linspace(self.cx, edge_px, _SPAN_STEPS)
-        rays = self.rays(np.column_stack([columns, np.full(_SPAN_STEPS, self.cy)]))
-        rays = rays[np.isfinite(rays[:, 0])]
-        return float(np.arctan2(rays[-1, 1], rays[-1, 0]))
 
     def rays(self, pixels: ArrayLike) -> FloatArray:
         """Unit vectors along which pixels look, in the camera's body frame (x forward).

@@ -1,4 +1,4 @@
-"""How does what is open end? By `close`, which the end of a `with` block calls as well."""
+"""Base class for objects with `close`, which the end of a `with` block calls."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Closing(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Nothing more comes."""
+        """Close; nothing can be used after that."""
 
     def __enter__(self: _Self) -> _Self:
         return self

@@ -16,12 +16,12 @@ from textwrap import wrap
 from tracker.config import NODE_NAME, Config, allowed_values, parameter_extra
 
 GROUP_TITLES = {
-    "specification": "The specification's table 1",
+    "specification": "The original node (specification, table 1)",
     "frames": "Frames and camera",
     "perception": "Perception: image to hands",
-    "pose": "Detectors and the second opinion of poses",
+    "pose": "Detectors and body poses",
     "gestures": "Gestures: what hands say",
-    "ranging": "Ranging: scan to distances",
+    "ranging": "Ranging: scan or depth image to distances",
     "tracking": "Tracking: measurements to customers",
     "selection": "Selection and poses",
     "service": "Waiting list",
@@ -36,7 +36,7 @@ def default_yaml() -> str:
     """The ROS parameter file of every default, with meaning, unit and range as comments."""
     return parameter_yaml(
         Config(),
-        "Every parameter with its default; written from tracker/config.py by `make config`.",
+        "Every parameter with its default. Written from tracker/config.py by `make config`.",
     )
 
 
@@ -49,7 +49,7 @@ def parameter_yaml(config: Config, title: str) -> str:
     """
     lines = [
         f"# {title}",
-        "# Basic parameters first, then the expert ones. live: may change while the node runs.",
+        "# Basic parameters first, then expert ones. live: it may change while the node runs.",
         f"{NODE_NAME}:",
         "  ros__parameters:",
     ]
@@ -101,17 +101,22 @@ def markdown_page() -> str:
     """The page of the documentation that lists every parameter."""
     return f"""# Parameters
 
-Written from `tracker/config.py` by `make config`; `raised-hand parameters` shows the same in a
-terminal. Live: may change while the node runs.
+`raised-hand parameters` shows the basic parameters in a terminal, `--all` every one. Set one with
+`-p name:=value`, or several in a copy of `config/hand_detector.yaml`, for `--config` and for the
+node. A typo, a wrong type or a value out of range is an error that names the parameter. Files are
+read as ROS 2 reads them. *Live* parameters may change while the node runs.
+
+This page is written from `tracker/config.py` by `make config`.
 
 ## {LEVEL_TITLES["basic"]}
 
-What a new robot, camera or room may need.
+A new robot, camera or room may need other values of these.
 
 {markdown_tables("basic")}
 ## {LEVEL_TITLES["expert"]}
 
-The defaults mostly stay. `raised-hand tune` searches some of these: [Tuning](tuning.md).
+Most users keep the defaults of these. `raised-hand tune` searches for better values of some:
+[Tuning](tuning.md).
 
 {markdown_tables("expert")}"""
 

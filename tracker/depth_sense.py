@@ -1,4 +1,4 @@
-"""What does the depth camera say about an image's people? From waiting pictures to claims."""
+"""Which people does the depth camera show? From depth images to measurements."""
 
 from __future__ import annotations
 

@@ -4,7 +4,6 @@
         ConfigError        a parameter file or value (also a ValueError)
         ShapeError         arrays that disagree in shape (also a ValueError)
         MeasurementError   a measurement that no tracker can use (also a ValueError)
-        CovarianceError    a covariance that is none (also a ValueError)
         ClockError         stamps that no tracker can live with (also a ValueError)
         TransformError     no transform between two frames at a stamp (also a LookupError)
         ModelFileError     a model file that is missing, broken or cannot be fetched
@@ -33,10 +32,6 @@ class ShapeError(TrackerError, ValueError):
 
 class MeasurementError(TrackerError, ValueError):
     """A measurement holds numbers that no tracker can use."""
-
-
-class CovarianceError(TrackerError, ValueError):
-    """A matrix that should be a covariance is not symmetric positive definite."""
 
 
 class ClockError(TrackerError, ValueError):

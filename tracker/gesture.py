@@ -1,4 +1,4 @@
-"""What can a hand say?"""
+"""Which gestures are there?"""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Gesture(IntEnum):
 
 
 def gestures_named(words: str) -> tuple[Gesture, ...]:
-    """The gestures of words with commas between, as `palm, fist`; all of them for `all`.
+    """The gestures of words separated by commas, as `palm, fist`; all of them for `all`.
 
     Raises:
         ValueError: A word is none of them.
@@ -46,7 +46,7 @@ def gestures_named(words: str) -> tuple[Gesture, ...]:
     names = [word.strip() for word in words.split(",")]
     if unknown := [name for name in names if name not in known]:
         raise ValueError(
-            f"{unknown[0]!r} is no gesture; allowed is all, or some of {', '.join(known)} with "
-            "commas between"
+            f"{unknown[0]!r} is not a gesture; allowed is all, or some of {', '.join(known)} "
+            "separated by commas"
         )
     return tuple(known[name] for name in names)

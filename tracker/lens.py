@@ -152,7 +152,7 @@ class Lens:
         return np.column_stack([points * scale[:, None], np.cos(off_axis_rad)])
 
     def _straighten(self, points: FloatArray) -> FloatArray:
-        """Undo `_bend` by Newton's method; NaN where that finds nothing on the rising branch."""
+        """Invert `_bend` by Newton's method; NaN where no solution is on the rising branch."""
         angles, radii = self._table
         radius = np.hypot(points[:, 0], points[:, 1])
         start = np.tan(np.interp(radius, radii, angles)) / np.maximum(radius, 1e-12)

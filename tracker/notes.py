@@ -1,4 +1,4 @@
-"""What was missing or odd about an image? A kind that code may ask for, and words for people."""
+"""What was missing or odd about an image? A kind for code, and a text for people."""
 
 from __future__ import annotations
 
@@ -42,17 +42,17 @@ class NoteKind(Enum):
 
     @property
     def is_remark(self) -> bool:
-        """Whether it is worth saying once, and no fault."""
+        """Whether it is reported once, but is not a fault."""
         return self in _REMARKS
 
     @property
     def leaves_scan_unused(self) -> bool:
-        """Whether it tells why no scan was of use for an image."""
+        """Whether it is a reason why no scan was used for an image."""
         return self in _WITHOUT_SCAN
 
     @property
     def leaves_depth_unused(self) -> bool:
-        """Whether it tells why no depth image was of use for an image."""
+        """Whether it is a reason why no depth image was used for an image."""
         return self in _WITHOUT_DEPTH
 
 
@@ -104,7 +104,7 @@ class Note:
     """One thing that was missing or odd about an image.
 
     Attributes:
-        kind: What it is about; decisions are made by it, never by the text.
+        kind: What it is about; code decides by the kind, never by the text.
         text: The same as a short sentence, with names and numbers.
     """
 

@@ -32,7 +32,7 @@ from tracker.gesture import Gesture
 from tracker.locating import CameraLocator, CameraPlace, MapLocator, choose_scan, shown_ns
 from tracker.locating.picture_camera import PictureCameras, configured_camera
 from tracker.notes import Note, NoteKind
-from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.detector import HandDetector, Hints
 from tracker.perception.gestures.customers import CustomerGestures
 from tracker.perception.gestures.reading import GestureReader
 from tracker.perception.upright import Turn, upright_turn
@@ -70,6 +70,9 @@ class Pipeline:
             pass one around tf2's.
         watch: Passed on to the tracker.
         image_topic: Where images come from; tells whether they are rectified (`image_form`).
+
+    Attributes:
+        model_runs: How many model runs an image may take in perception; None is as configured.
     """
 
     def __init__(
@@ -87,6 +90,7 @@ class Pipeline:
 
             detector = open_detector(self.config)
         self.detector = detector
+        self.model_runs: int | None = None
         self.tracker = PersonTracker(self.config, watch=watch)
         self.room = WaitingRoom(self.config.processing_rate, transforms)
         self.camera = configured_camera(self.config)
@@ -202,7 +206,7 @@ class Pipeline:
         return self.transforms.can_lookup(self.config.fixed_frame, frame, stamp_ns)
 
     def process(self, image: CameraImage) -> FrameResult:
-        """The way of one frame, now.
+        """Process one frame.
 
         Returns:
             What came of it. Missing transforms and scans are no errors: they are noted, hands are
@@ -217,8 +221,8 @@ class Pipeline:
         if self._size not in (None, size):
             self._note(
                 NoteKind.PICTURE_SIZE_CHANGED,
-                f"pictures of {image.width}x{image.height} follow others: hands are followed only "
-                "through pictures of one size",
+                f"pictures of {image.width}x{image.height} follow pictures of another size: "
+                "hands cannot be followed from one size to another",
             )
         self._size = size
         if image.remark:
@@ -238,14 +242,14 @@ class Pipeline:
         )
         self._notes += map_notes
         people = scan_people(scan, self.config, room)
-        piecewise = self.detector if isinstance(self.detector, PiecewiseDetector) else None
         self._turn_upright(fixed_from_camera)
-        if piecewise is not None and place.is_located:
+        hints = Hints(model_runs=self.model_runs)
+        if place.is_located:
             seen = [people.xy_m] if sight is None else [people.xy_m, sight.bodies.people.xy_m]
             known_xy_m = np.concatenate([self.tracker.positions_m, *seen])
             expected_px = expected_hands(known_xy_m, self.camera, fixed_from_camera)
-            piecewise.expect(self._turn.boxes(expected_px, size))
-        upright_hands = self.detector.find(self._turn.picture(image))
+            hints = replace(hints, expected_px=self._turn.boxes(expected_px, size))
+        upright_hands = self.detector.find(self._turn.picture(image), hints)
         upright_hands = self._gestures.read(image.stamp_ns, upright_hands, self.config)
         hands = self._turn.hands_back(upright_hands, size)
         tracked = self.tracker.people
@@ -267,7 +271,7 @@ class Pipeline:
         beyond = len(hands) - np.count_nonzero(measurements.hand >= 0)
         if beyond:
             end_deg = np.rad2deg(self.camera.lens.max_off_axis_rad)
-            text = f"{beyond} hands beyond the lens's range of {end_deg:.0f} degrees: no bearing"
+            text = f"{beyond} hands outside the lens's {end_deg:.0f} degrees: no bearing"
             self._note(NoteKind.HAND_BEYOND_LENS, text)
         if scan is not None:
             self._sustained_ns = max(self._sustained_ns, scan.stamp_ns)
@@ -309,7 +313,7 @@ class Pipeline:
             scan=scan if scan is not None or sight is None else sight.bodies.slice,
             notes=tuple(self._notes),
             frame_id=place.frame_id,
-            work=piecewise.work if piecewise is not None else None,
+            work=self.detector.work,
             waiting_list=self.tracker.calls.now,
             room_map=None if room is None else room.located,
         )
@@ -378,7 +382,7 @@ class Pipeline:
         if place.is_first and self.tracker.has_tracks:
             self._note(
                 NoteKind.NEW_FIXED_FRAME,
-                "the first transform has come: tracks start again in the fixed frame",
+                "the first transform was received: tracking starts again in the fixed frame",
             )
             self.tracker.reset()
             self._memory.background.reset()
@@ -395,7 +399,8 @@ class Pipeline:
             ahead_s = (kept.stamp_ns - stamp_ns) / 1e9
             self._note(
                 NoteKind.CALLS_OF_LATER,
-                f"the kept waiting list is {ahead_s:.1f} s later than the images: it begins empty",
+                f"the stored waiting list is {ahead_s:.1f} s later than the images: it starts "
+                "empty",
             )
 
     def _choose_scan(
@@ -420,7 +425,7 @@ class Pipeline:
         self._turn = turn
 
     def _let_go(self, tracks: Tracks) -> Tracks:
-        """Who says so with `gesture_release` is served no more; the next image chooses another."""
+        """End the service of a customer who shows `gesture_release`."""
         row = tracks.row_of(tracks.selected_id)
         gesture = Gesture.NONE if row is None else Gesture(int(tracks.gesture[row]))
         if gesture is Gesture.NONE or gesture.word != self.config.gesture_release:

@@ -149,13 +149,10 @@ class TransformBuffer:
         for samples in self._moving.values():
             del samples[bisect_right(samples, stamp_ns, key=_stamp) :]
 
-    def clear(self, *, keep_static: bool = True) -> None:
-        """Forget the moving transforms (after a jump of the clock), or all of them."""
+    def clear(self) -> None:
+        """Forget the moving transforms, after a jump of the clock."""
         for child in list(self._moving):
             del self._moving[child], self._parent[child]
-        if not keep_static:
-            self._static.clear()
-            self._parent.clear()
 
     def _chain(self, frame: str) -> list[str]:
         chain = [frame]
@@ -176,7 +173,7 @@ class TransformBuffer:
         samples = self._moving[child]
         if not samples:
             raise TransformError(
-                f"Transform from {child!r} to {self._parent[child]!r} has not come since the "
+                f"Transform from {child!r} to {self._parent[child]!r} was not received since the "
                 "clock jumped back."
             )
         row = bisect_left(samples, stamp_ns, key=_stamp)
@@ -196,8 +193,8 @@ class TransformBuffer:
         missing = [repr(frame) for frame in (target, source) if frame not in known]
         heard = ", ".join(sorted(known)) or "none yet"
         if missing:
-            return f"No transform names the frame {' or '.join(missing)}; heard of: {heard}."
-        return f"Frames {source!r} and {target!r} are not connected; heard of: {heard}."
+            return f"No transform names the frame {' or '.join(missing)}; known frames: {heard}."
+        return f"Frames {source!r} and {target!r} are not connected; known frames: {heard}."
 
 
 def checked(sample: StampedTransform) -> StampedTransform:
@@ -226,7 +223,7 @@ def checked(sample: StampedTransform) -> StampedTransform:
 
 
 def _circle(child: str, parent: str) -> TransformError:
-    return TransformError(f"Transform from {child!r} to {parent!r} closes a circle of frames.")
+    return TransformError(f"Transform from {child!r} to {parent!r} closes a loop of frames.")
 
 
 def _stamp(sample: tuple[int, RigidTransform]) -> int:

@@ -1,4 +1,4 @@
-"""Harm recordings of every kind and kill writers; exit 1 if anything is lost beyond the damage.
+"""Harm recordings of every kind and kill writers; exit 1 if anything is lost outside the damage.
 
 python -m benchmarks.faults                              all of it, under ten minutes
 python -m benchmarks.faults --tries 42 --files-alone     a small part, without bombs and writers

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 from tracker.errors import TrackerError
 from tracker.messages.picture_size import MAX_PIXELS
-from tracker.recording import Recording, open_recording
-from tracker.recording.sources import RawMessage
+from tracker.recording import open_recording
+from tracker.recording.sources import RawMessage, Reading
 
 LIMIT_BYTES = 1_500_000_000
 _TIME_S = 60
@@ -62,7 +62,7 @@ def read(path: Path) -> dict[str, Any]:
         with open_recording(path, with_truth=True) as recording:
             try:
                 for message in recording._source.messages(set(recording.topics)):
-                    if _is_understood(recording, message):
+                    if _is_understood(message):
                         keys.append((message.topic, message.log_ns))
             except TrackerError as error:
                 said = str(error)
@@ -78,9 +78,9 @@ def read(path: Path) -> dict[str, Any]:
     return {"keys": keys, "said": said}
 
 
-def _is_understood(recording: Recording, message: RawMessage) -> bool:
+def _is_understood(message: RawMessage) -> bool:
     try:
-        recording._source.read(message, is_static=False, max_pixels=MAX_PIXELS)
+        message.read(Reading(MAX_PIXELS))
     except TrackerError:
         return False
     return True

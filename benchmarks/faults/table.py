@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from benchmarks.faults.attempt import LIMIT_BYTES, Outcome
 
 _HEAD = (
-    "kind", "tries", "read whole", "read in part", "refused", "tracebacks", "worst memory",
-    "lost beyond the damage",
+    "kind", "attempts", "read whole", "read in part", "refused", "tracebacks", "most memory",
+    "lost outside the damage",
 )  # fmt: skip
 
 
@@ -68,9 +68,10 @@ class Row:
         if lost is not None:
             self.lost = (self.lost or 0) + lost
             if lost and not outcome.crash:
-                self.findings.append(f"{how}: {lost} messages lost beyond it ({outcome.said})")
+                what = f"{lost} messages lost outside the damage"
+                self.findings.append(f"{how}: {what} ({outcome.said})")
         if must_say and not outcome.said and not outcome.crash:
-            self.findings.append(f"{how}: nothing was said")
+            self.findings.append(f"{how}: no message about it")
 
     def judge(self, wrong: str, how: str) -> None:
         """Take in an attempt on a writer."""

@@ -24,7 +24,8 @@ from tracker.errors import TrackerError
 from tracker.replay import replay
 
 class Nobody:
-    def find(self, image): return Hands.none()
+    work = None
+    def find(self, image, hints): return Hands.none()
     def reset(self): pass
     def configure(self, config): pass
 

@@ -1,11 +1,11 @@
-"""A ROS 2 node without ROS: Cyclone DDS with the wire format of ROS 2.
+"""A ROS 2 node without ROS: Cyclone DDS with the protocol of ROS 2.
 
 environment   which domain, and how far discovery reaches (the variables ROS 2 reads)
 names         ~/topic, namespaces, remapping; how DDS names topics and types
 profiles      quality of service
-raw           serialized messages straight through Cyclone DDS, which has no call for it
+raw           serialized messages through Cyclone DDS, whose API has no call for it
 services      requests and replies, and the types they carry
-node          the whole: publishers, subscriptions, services, and a place in ROS 2's graph
+node          the node: publishers, subscriptions, services, and its entry in ROS 2's graph
 """
 
 from tracker.errors import ConfigError
@@ -14,7 +14,7 @@ try:
     import cyclonedds  # noqa: F401  # is it there at all?
 except ModuleNotFoundError as missing:
     raise ConfigError(
-        "Cyclone DDS is not installed; needed is the extra `dds`: "
+        "Cyclone DDS is not installed. Install the extra `dds`: "
         "pip install '.[dds]' in the project's folder."
     ) from missing
 

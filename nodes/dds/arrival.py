@@ -1,4 +1,4 @@
-"""Did it arrive? What a sender can know of that."""
+"""Did a message arrive? What its publisher can know."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ class Arrival:
         dropped = dropped_in_domain(self._domain_id) - self._dropped_before
         if dropped > 0:
             said.append(
-                f"{dropped} datagrams found no room in the receive buffers of listeners on this "
-                "machine; what was not sent again, since one side is best effort, is lost. "
-                f"{SYSCTL}, and start the listeners again; docs/ros.md says what those of ROS 2 "
-                "need besides."
+                f"{dropped} datagrams did not fit into the receive buffers of subscribers on "
+                "this machine. Messages of best-effort connections are lost. "
+                f"{SYSCTL}, and start the subscribers again; docs/ros.md says what ROS 2 nodes "
+                "need as well."
             )
         if worst_lag_s >= _LATE_S:
-            said.append(f"Slower than real time: one message went out {worst_lag_s:.1f} s late.")
+            said.append(f"Slower than real time: one message was sent {worst_lag_s:.1f} s late.")
         return said
 
 
@@ -56,8 +56,8 @@ def _unheard(sent: list[Publisher]) -> list[str]:
     if not unheard:
         return []
     if len(unheard) == len(sent):
-        return ["Nobody listened; check ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE."]
-    return [f"Nobody listened to {', '.join(unheard)}."]
+        return ["No subscriber was found; check ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE."]
+    return [f"No subscriber was found for {', '.join(unheard)}."]
 
 
 def _of_topic(publisher: Publisher, count: int, deadline_s: float) -> list[str]:
@@ -65,12 +65,12 @@ def _of_topic(publisher: Publisher, count: int, deadline_s: float) -> list[str]:
     refused = publisher.refused
     if refused.times:
         said.append(
-            f"{publisher.topic}: {refused.times} subscribers ask for more {refused.policy} than "
-            "is offered, and hear nothing."
+            f"{publisher.topic}: {refused.times} subscribers request more {refused.policy} than "
+            "is offered, and receive nothing."
         )
     if publisher.lost:
         said.append(
-            f"{publisher.topic}: {publisher.lost} of {count} messages were not sent, since a "
+            f"{publisher.topic}: {publisher.lost} of {count} messages were not sent, because a "
             "reliable subscriber was too slow."
         )
     if publisher.profile.reliable and not publisher.is_acknowledged(

@@ -1,4 +1,4 @@
-"""`raised-hand echo`: what is said on one topic of the DDS wire, as text."""
+"""`raised-hand echo`: print the messages of one topic as text."""
 
 from __future__ import annotations
 
@@ -69,15 +69,15 @@ def _find(node: Node, topic: str, timeout_s: float | None) -> tuple[str, Profile
     while not (offers := node.offers(topic, _STEP_S)):
         if deadline is not None and time.monotonic() >= deadline:
             raise RecordingError(
-                f"Nobody publishes {topic}; check its name, ROS_DOMAIN_ID and "
+                f"There is no publisher of {topic}; check its name, ROS_DOMAIN_ID and "
                 "ROS_AUTOMATIC_DISCOVERY_RANGE."
             )
     type_name = offers[0].type_name
     if type_name not in typestore().fielddefs:
-        raise ConfigError(f"{topic} carries {type_name}, which is unknown here.")
+        raise ConfigError(f"{topic} has the type {type_name}, which is not supported.")
     reliable = all(offer.reliable for offer in offers)
     latched = all(offer.transient_local for offer in offers)
-    return type_name, Profile(reliable, latched, 10, "What every publisher offers.")
+    return type_name, Profile(reliable, latched, 10, "Works with every publisher.")
 
 
 def _text(type_name: str, cdr: bytes) -> str:

@@ -1,4 +1,4 @@
-"""What is one topic's end on the wire, and who is at the other?"""
+"""Publishers and subscriptions of one topic, and the nodes they are connected with."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Publisher:
 
     @property
     def refused(self) -> Refusal:
-        """Readers that ask for more than is offered and hear nothing."""
+        """Readers that request more than is offered and receive nothing."""
         return _refusal(self._writer.get_offered_incompatible_qos_status())
 
     def is_acknowledged(self, timeout_s: float) -> bool:
@@ -119,7 +119,7 @@ class Subscription:
 
     @property
     def refused(self) -> Refusal:
-        """Writers that offer less than is asked for; nothing of theirs is heard."""
+        """Writers that offer less than is requested; nothing is received from them."""
         with self._lock:
             return _refusal(self.reader.get_requested_incompatible_qos_status())
 

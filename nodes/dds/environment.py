@@ -1,4 +1,4 @@
-"""Which DDS domain is meant, and whom may we meet there? By the variables that ROS 2 reads.
+"""Which DDS domain and network are used? By the environment variables of ROS 2.
 
 As rcl and rmw_cyclonedds (Jazzy) do it, so that a node without ROS meets those with it.
 """
@@ -35,7 +35,7 @@ _ROUTES = Path("/proc/net/route")
 
 
 class DomainSettings(NamedTuple):
-    """Where to meet.
+    """The domain and the network.
 
     Attributes:
         domain_id: The DDS domain.
@@ -62,7 +62,7 @@ def domain_settings(environment: Mapping[str, str]) -> DomainSettings:
     """
     text = environment.get("ROS_DOMAIN_ID") or "0"
     if not text.isascii() or not text.isdigit() or int(text) > LAST_DOMAIN:
-        raise ConfigError(f"ROS_DOMAIN_ID is {text!r}; needed is a number, 0 to {LAST_DOMAIN}.")
+        raise ConfigError(f"ROS_DOMAIN_ID is {text!r}; expected a number, 0 to {LAST_DOMAIN}.")
     reach = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
     if reach not in _RANGES:
         raise ConfigError(
@@ -97,7 +97,7 @@ def _with_files(own: str) -> str:
 
 
 def _interfaces(reach: str, peers: list[str]) -> str:
-    """Where to listen: Cyclone DDS 11 is deaf to greetings on an interface it does not use.
+    """Interfaces to use: Cyclone DDS 11 discovers nothing on an interface that it does not use.
 
     By itself it uses the network card alone, and ROS 2 greets this machine on the loopback.
     """

@@ -1,4 +1,4 @@
-"""Does what is sent to the node arrive? What is lost on the way is told, mended if it can be."""
+"""Do the messages for this node arrive? Losses are reported, and repaired if possible."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class LinkWatch:
     def _with_load(self, link: Link, load: SocketLoad, dropped: int) -> Link:
         is_reliable = self._images.profile.reliable
         loss = (
-            f"{dropped} datagrams of late found no room in the socket's receive buffer of "
+            f"{dropped} datagrams recently did not fit into the socket's receive buffer of "
             f"{load.buffer_bytes} bytes, and an image that lacks one is lost; {load.remedy}"
         )
         values = {
@@ -64,5 +64,5 @@ class LinkWatch:
 
 def _link(subscription: Subscription) -> Link:
     count, policy = subscription.refused
-    refusal = f"{count} that offer less {policy} than is asked for are not heard" if count else ""
-    return Link(subscription.publishers, refusal)
+    refusal = f"{count} offer less {policy} than requested; nothing is received from them"
+    return Link(subscription.publishers, refusal if count else "")

@@ -83,13 +83,14 @@ def ros_type_name(dds_name: str) -> str | None:
 def _rule(text: str) -> tuple[str, str]:
     source, separator, target = text.partition(":=")
     if not separator or not source or not target:
-        raise ConfigError(f"A remapping is {text!r}; needed is FROM:=TO.")
+        raise ConfigError(f"A remapping is {text!r}; expected FROM:=TO.")
     return source, target
 
 
 def _check(full_name: str) -> str:
     if not _FULL_NAME.fullmatch(full_name):
         raise ConfigError(
-            f"The name {full_name!r} is none in ROS; allowed are letters, digits, _ and /."
+            f"The name {full_name!r} is not a valid ROS name; allowed are letters, digits, _ and "
+            "/."
         )
     return full_name

@@ -56,7 +56,7 @@ class ParameterServer:
         self._use_sim_time, self._now_ns = use_sim_time, now_ns
         self._descriptors = {item.name: item for item in descriptors()} | {
             _SIM_TIME: Descriptor(
-                _SIM_TIME, False, "Take the time from /clock.", "true or false", True, None, None
+                _SIM_TIME, False, "Use the time from /clock.", "true or false", True, None, None
             )
         }
         self._events = node.publisher("/parameter_events", _EVENT, PARAMETER_EVENTS)

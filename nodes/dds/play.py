@@ -1,4 +1,4 @@
-"""`raised-hand play`: a recording on the DDS wire, as if its robot were here."""
+"""`raised-hand play`: publish a recording as if its robot were here."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def play(
     if not 0.01 <= rate <= 1000.0:
         raise ConfigError(f"The rate is {rate:g}; allowed is 0.01 to 1000.")
     if not 0.0 <= start_offset_s < 1e9 or not 0.0 <= delay_s < 1e6:
-        raise ConfigError("Start offset and delay are seconds, not negative.")
+        raise ConfigError("Start offset and delay are seconds and must not be negative.")
     played = Played()
     tape = _Tape(Path(source), topics, best_effort=best_effort)
     with tape, Node(NODE_NAME, remaps=remaps) as node:
@@ -199,10 +199,14 @@ class _Tape(Closing):
             if type_name in typestore().fielddefs:
                 chosen[topic] = type_name
             else:
-                self.skipped.append(f"{topic}: its type {type_name} is unknown here; left out.")
+                self.skipped.append(
+                    f"{topic}: its type {type_name} is not supported; it is skipped."
+                )
         if not chosen:
             names = ", ".join(found) or "none"
-            raise RecordingError(f"{self._path}: holds nothing to play; its topics are {names}.")
+            raise RecordingError(
+                f"{self._path}: contains nothing to play; its topics are {names}."
+            )
         return chosen
 
 
@@ -248,7 +252,7 @@ def _offered(path: Path) -> dict[str, Profile]:
                         first.reliability is not QosReliability.BEST_EFFORT,
                         first.durability is QosDurability.TRANSIENT_LOCAL,
                         first.depth if 0 < first.depth < 2**31 else DEFAULT.depth,
-                        "As it was recorded.",
+                        "As recorded.",
                     )
     except (ReaderError, OSError):  # damaged: what can be read of it is played all the same
         pass

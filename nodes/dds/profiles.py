@@ -1,4 +1,4 @@
-"""How hard does the wire try? Quality of service as Cyclone DDS takes it."""
+"""Quality of service in the form of Cyclone DDS."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ _UNLIMITED = -1
 _MAX_BLOCKING_NS = 100_000_000
 
 DEFAULT = Profile(True, False, 10, "ROS 2's default.")
-GRAPH = Profile(True, True, 1, "Who comes late must know who is there.")
-CLOCK = Profile(False, False, 1, "Only the present counts.")
+GRAPH = Profile(True, True, 1, "A subscriber that starts late must know who is there.")
+CLOCK = Profile(False, False, 1, "Only current values matter.")
 SERVICES = Profile(True, False, 10, "ROS 2's default for services.")
 PARAMETER_SERVICES = Profile(True, False, 1000, "ROS 2's default for parameters.")
 PARAMETER_EVENTS = Profile(True, False, 1000, "ROS 2's default for parameters.")

@@ -1,4 +1,4 @@
-"""Requests and replies: how does a ROS 2 service look on the wire of rmw_cyclonedds?
+"""Requests and replies of a ROS 2 service in the protocol of rmw_cyclonedds.
 
 Two topics, `rq/<name>Request` and `rr/<name>Reply`. Each message begins, behind its encapsulation,
 with sixteen bytes that name the client and the request; the reply repeats them.

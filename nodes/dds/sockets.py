@@ -1,4 +1,4 @@
-"""Do the UDP sockets hold what comes? Linux tells of each how much it dropped."""
+"""Do UDP sockets drop datagrams? Linux counts them for each socket."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class SocketLoad(NamedTuple):
     def remedy(self) -> str:
         """What helps when datagrams are dropped."""
         if self.buffer_bytes >= _WANTED_BYTES:
-            return "this machine is too busy to take in so much"
+            return "this computer is too busy to receive so much"
         return f"{SYSCTL}, then start again"
 
 

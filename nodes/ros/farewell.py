@@ -1,4 +1,4 @@
-"""How is a raised hand taken back once the context has been shut down?
+"""How is `hand_raised: false` published after the context was shut down?
 
 rclpy's own handler of Ctrl-C shuts every context down before anybody hears of it, and the
 publishers of such a context send nothing any more: listeners would see the hand up for ever.
@@ -21,7 +21,7 @@ _MEETING_S = 1.0
 
 
 def take_back(publisher: Publisher[Any], domain_id: int) -> None:
-    """Say once more on a topic that no hand is up, from a context that lives as long as that.
+    """Publish once on a topic that no hand is up, from a short-lived context.
 
     Args:
         publisher: Of `hand_raised`, whose context is down.

@@ -1,4 +1,4 @@
-"""How does memory that is not needed any more go back to the system?"""
+"""How is unused memory returned to the system?"""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import gc
 
 
 def give_back() -> None:
-    """Collect what only circles hold, and let the allocator return what is free.
+    """Run the garbage collector, and let the allocator return free memory.
 
     glibc keeps what the threads of the models have freed for threads that never come again: some
     20 MB each time that models are loaded again. Other libraries have no such function.

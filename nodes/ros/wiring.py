@@ -1,4 +1,4 @@
-"""How does `NodeCore` hang on an rclpy node? Topics, services and clock.
+"""Connects `NodeCore` with an rclpy node: topics, services and clock.
 
 Both the plain and the lifecycle node use this. Subscriptions are raw: bytes go into the core and
 come out of it, and no message is taken apart by rclpy.
@@ -169,7 +169,7 @@ class RosWiring:
 
     @contextmanager
     def _unless_shut_down(self) -> Iterator[None]:
-        """Whoever shuts the context down, as rclpy does on Ctrl-C, wants nothing said any more."""
+        """After the context is shut down, as by Ctrl-C, nothing can be logged."""
         try:
             yield
         except RuntimeError:  # RCLError is one

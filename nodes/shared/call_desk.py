@@ -1,4 +1,4 @@
-"""Commands in, answers and the waiting list out; the list is kept in a file where one is named."""
+"""Commands in, answers and the waiting list out; the list can be stored in a file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tracker.service.kept_calls import KeptCalls
 
 
 class CallDesk:
-    """What a node says and hears about the waiting list; used by its worker alone.
+    """The node's side of the waiting list; used only by the worker thread.
 
     Args:
         pipeline: Its tracker keeps the list; a list of the run before is given to it.
@@ -59,14 +59,14 @@ class CallDesk:
             self._file.keep(calls)
 
     def obey(self, command: Command) -> Answer:
-        """Follow a command, and say what came of it."""
+        """Execute a command, and publish the answer."""
         answer = self._pipeline.tracker.calls.obey(command)
         self.answer(str(command), answer)
         self.show()
         return answer
 
     def answer(self, command: str, answer: Answer) -> None:
-        """Say what came of a command."""
+        """Publish the answer to a command."""
         word = "done" if answer.is_done else "refused"
         said = build(types.STRING, data=f"{command}: {word}: {answer.text}")
         self._publish(Output.ANSWERS, serialize(said))

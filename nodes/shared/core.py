@@ -34,7 +34,7 @@ from tracker.messages import Encoded, decode, encode
 from tracker.messages.header_peek import peek_header
 from tracker.messages.types import deserialize
 from tracker.notes import NoteKind
-from tracker.perception.detector import HandDetector, PiecewiseDetector
+from tracker.perception.detector import HandDetector
 from tracker.perception.gestures.customers import GestureNews
 from tracker.pipeline import Pipeline
 from tracker.service import Answer, Command, Verb
@@ -59,7 +59,7 @@ _STOP_S = 10.0
 
 
 class NodeCore:
-    """The node without its wire.
+    """The node without ROS or DDS.
 
     `start` it, hand every message to `receive`, publish `diagnostics` once in
     `diagnostics.REPORT_PERIOD_S`, and `stop` it. All methods may be called from any thread and
@@ -72,8 +72,8 @@ class NodeCore:
         log: Tells the user something.
         now_ns: The node's clock, simulated or not: the one of the stamps.
         detector: Finds hands; by default MediaPipe's models.
-        transforms: By default a buffer of the project's own, filled by `receive`. A shell that
-            passes another one (around tf2's) fills it itself and calls `heard_transforms`.
+        transforms: By default a buffer of the project's own, filled by `receive`. A shell may
+            pass another one, around tf2's.
         topic_names: Where each input is listened to, for words; by default the unmapped names.
         links: What the wire knows of who publishes the inputs; asked for every report.
         steady_ns: A clock that never jumps.
@@ -134,12 +134,12 @@ class NodeCore:
 
     @property
     def is_hand_up(self) -> bool:
-        """Whether the last that was said is that a hand is up."""
+        """Whether the last published `hand_raised` was true."""
         return self._last is not None and self._last.hand_raised
 
     @property
     def is_alive(self) -> bool:
-        """Whether the worker runs; it ends by `stop`, or by a mistake of ours that it prints."""
+        """Whether the worker runs; it ends by `stop`, or by an error that it prints."""
         return self._worker.is_alive()
 
     @property
@@ -160,20 +160,15 @@ class NodeCore:
             self._page.close()
 
     def receive(self, item: Input, message: Encoded) -> None:
-        """Store what has come on the wire."""
+        """Store a received message."""
         self._diagnostics.heard(item)
         if item is Input.IMAGES:
             self._receive_image(message)
         else:
             self._inbox.put(item, message)
 
-    def heard_transforms(self, *, is_static: bool = False) -> None:
-        """Transforms have come to a buffer that the shell fills itself."""
-        self._diagnostics.heard(Input.STATIC_TRANSFORMS if is_static else Input.TRANSFORMS)
-        self._inbox.wake()
-
     def enable(self, is_enabled: bool) -> str:
-        """Process images from now on, or leave them and forget everybody.
+        """Process images from now on, or ignore them and forget everybody.
 
         Returns:
             What happened, in words.
@@ -187,7 +182,7 @@ class NodeCore:
         return words if was_enabled != is_enabled else f"already {words}"
 
     def release(self) -> tuple[bool, str]:
-        """Let the selected customer go; the next one is selected with the next image.
+        """End the service of the selected customer; the next image selects another.
 
         Returns:
             Whether anybody was selected, and what happened, in words.
@@ -225,7 +220,7 @@ class NodeCore:
         self._inbox.order(lambda: self._pipeline.configure(config))
 
     def refuse(self, item: Input, text: str) -> None:
-        """Count something that came and makes no sense, and say so once in a while."""
+        """Count a malformed message, and log it once in a while."""
         self._diagnostics.malformed(item, text)
         self._faults.add(item.value, text)
 
@@ -293,7 +288,7 @@ class NodeCore:
         return _CATCH_UP if can_keep_up else 1
 
     def _catch_up(self) -> None:
-        """Follow the orders and take in what has come, except images."""
+        """Execute pending orders and take in received data, except images."""
         delivery = self._inbox.take()
         for order in delivery.orders:
             order()
@@ -372,12 +367,11 @@ class NodeCore:
                 self._remarks.add(Input.IMAGES.value, note.text)
 
     def _pace(self, result: FrameResult) -> None:
-        """Let the search shrink before images are lost, and grow again."""
-        detector = self._pipeline.detector
-        if result.work is not None and isinstance(detector, PiecewiseDetector):
+        """Reduce the search before images are lost, and increase it again."""
+        if result.work is not None:
             busy_share = self._busy_s * self._config.processing_rate
             most = self._config.search_regions_per_frame
-            detector.set_budget(self._budget.after(result.work, busy_share, most))
+            self._pipeline.model_runs = self._budget.after(result.work, busy_share, most)
 
     def _reset(self, reason: str) -> None:
         self._pipeline.reset()
@@ -392,7 +386,7 @@ class NodeCore:
         self._take_back()
 
     def _mind_silence(self) -> None:
-        """Report nobody on the word of a camera that has died; the tracks wait for it."""
+        """Report nobody while the camera is silent; the tracks are kept."""
         silence_s = self._diagnostics.silence_s
         if self._last is None or len(self._images) or silence_s is None:
             return
@@ -413,7 +407,7 @@ class NodeCore:
 
     def _image_of(self, message: Encoded) -> CameraImage:
         (image,) = decode(*message, max_pixels=self._config.picture_max_pixels)
-        assert isinstance(image, CameraImage), "the shell subscribes to images only"
+        assert isinstance(image, CameraImage), "only images are subscribed to"
         return image
 
     def _note_reset(self, reason: str) -> None:

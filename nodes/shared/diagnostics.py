@@ -126,13 +126,13 @@ class Diagnostics:
             self._scan_clock.add(stamp_ns, now_ns)
 
     def malformed(self, item: Input, text: str) -> None:
-        """What has come makes no sense."""
+        """A malformed message has come."""
         with self._lock:
             self._inputs[item].malformed += 1
             self._inputs[item].last_fault = text
 
     def processed(self, result: FrameResult, latency_s: float, busy_s: float) -> None:
-        """An image is through.
+        """An image was processed.
 
         Args:
             result: What came of it.
@@ -221,7 +221,7 @@ class Diagnostics:
         malformed = self._increase(f"{item.value} malformed")
         is_fault = level == OK and malformed > 0
         if is_fault:
-            level, message = WARN, f"{malformed} malformed of late: {seen.last_fault}"
+            level, message = WARN, f"{malformed} malformed messages recently: {seen.last_fault}"
         values: dict[str, object] = {
             "topic": self._topic_names[item],
             "received": seen.count,
@@ -242,19 +242,19 @@ class Diagnostics:
             for note in notes:
                 if note.kind in (NoteKind.CAMERA_INFO_REFUSED, NoteKind.PRINCIPAL_POINT_OFF):
                     return WARN, note.text
-            words = "missing: camera_fx, camera_fy, camera_cx and camera_cy serve"
+            words = "missing: camera_fx, camera_fy, camera_cx and camera_cy are used"
             return OK, "has come" if seen.count else words
         if item is Input.MAP:  # latched: it comes once
             notes = self._last.notes if self._last is not None else ()
             for note in notes:
                 if note.kind is NoteKind.MAP_NOT_LOCATED:
                     return WARN, note.text
-            words = "missing: furniture is told from people by the scan alone"
+            words = "missing: only the scan tells furniture from people"
             return OK, "has come" if seen.count else words
         if item is Input.TRANSFORMS:
             located_ns = self._located_ns
             if located_ns is not None and self._since(located_ns) < SILENT_S:
-                return OK, "the camera is located"
+                return OK, "the camera's position is known"
             if seen.last_ns is None and self._inputs[Input.STATIC_TRANSFORMS].count:
                 return self._judge_connection("coming")
         if seen.last_ns is None:
@@ -277,7 +277,7 @@ class Diagnostics:
             return WARN, f"no depth was used in the last {unused} images: {why}"
         ahead_s = self._scan_clock.ahead_s()
         if item is Input.SCAN and _AHEAD_S < ahead_s < _OTHER_TIME_S:
-            return WARN, f"stamps are {ahead_s:.3f} s ahead of the node's clock: other clocks?"
+            return WARN, f"stamps are {ahead_s:.3f} s ahead of the node's clock: not synchronized?"
         link = self._links.get(item)
         return (WARN, f"coming, but {link.loss}") if link and link.loss else (OK, "coming")
 
@@ -300,7 +300,7 @@ class Diagnostics:
             message = "disabled"
         elif lost:
             level = WARN
-            message = f"falls behind: {counted(lost, 'image')} lost of late, {message}"
+            message = f"too slow: {counted(lost, 'image')} lost recently, {message}"
         latency, busy = np.array(self._latency_s or [np.nan]), np.array(self._busy_s or [np.nan])
         middle_s = float(np.median(latency))
         values: dict[str, object] = {

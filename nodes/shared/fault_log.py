@@ -1,4 +1,4 @@
-"""What was wrong with the input, how often, and when is it worth saying so again?"""
+"""What was wrong with the input, and how often? Limits how often it is logged."""
 
 from __future__ import annotations
 

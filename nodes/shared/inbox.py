@@ -1,4 +1,4 @@
-"""What has come and was not looked at yet? The only thing that callbacks and the worker share.
+"""Received data that is not yet processed: all that callbacks and worker share.
 
 Callbacks put bytes in and go; the worker takes them out. Everything is bounded: what overflows is
 the oldest, and it is counted.
@@ -43,7 +43,7 @@ _KEPT = {
 
 
 class Inbox:
-    """Thread-safe, bounded, and never slow for who puts something in."""
+    """A thread-safe, bounded queue that never blocks the callbacks."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()

@@ -1,4 +1,4 @@
-"""What does the wire know of one input, besides what has come?"""
+"""The connection of one input: publishers, and why nothing is received."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Link(NamedTuple):
     def silence(self) -> str:
         """Why nothing comes, to follow the words that say so."""
         if self.publishers == 0:
-            return f"; {self.refusal}" if self.refusal else ", which nobody publishes"
+            return f"; {self.refusal}" if self.refusal else ", which has no publisher"
         why = self.loss or self.refusal
         return f"; {counted(self.publishers, 'publisher')} connected" + (
             f", but {why}" if why else ""

@@ -24,7 +24,7 @@ HasSubscribers = Callable[[Output], bool]
 
 
 def publish_answer(result: FrameResult, publish: Publish) -> None:
-    """The poses, then the Bool: who acts on the Bool finds the pose of the same image there."""
+    """The poses, then the Bool: when the Bool arrives, the pose of its image is already there."""
     if result.customer_pose is not None:
         publish(Output.CUSTOMER_POSE, encode(result.customer_pose))
     if result.approach_pose is not None:
@@ -81,7 +81,7 @@ def publish_views(
 def publish_nobody(
     stamp_ns: int, frame_id: str | None, publish: Publish, has_subscribers: HasSubscribers
 ) -> None:
-    """Take everything back, so that no raised hand stays latched when nobody looks any more.
+    """Publish that nobody is there, so that no raised hand stays latched.
 
     Args:
         stamp_ns: Of the last image.

@@ -51,7 +51,7 @@ class NodePage:
         self._dashboard.follow_orders()
 
     def obey(self, command: Command) -> Answer:
-        """Follow a command about the waiting list."""
+        """Execute a command about the waiting list."""
         return self._calls.obey(command)
 
     def configure(self, config: Config) -> None:

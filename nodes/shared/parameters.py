@@ -63,7 +63,7 @@ def changed(config: Config, changes: dict[str, Any], *, is_running: bool = True)
     if fixed:
         raise ConfigError(
             f"{', '.join(f'`{name}`' for name in fixed)} cannot change while the node runs; "
-            "start it again with the new value, or clean a lifecycle node up before."
+            "restart the node with the new value, or clean up the lifecycle node first."
         )
     return config.replace(**ours) if ours else config
 

@@ -1,4 +1,4 @@
-"""With which quality of service is each topic heard and spoken, and why?
+"""The quality of service of each topic, and why.
 
 Plain data, for both shells. A reader that asks for less than a writer offers connects; one that
 asks for more hears nothing, without an error.
@@ -30,11 +30,11 @@ class Profile(NamedTuple):
 PROFILES: dict[Input | Output, Profile] = {
     Input.IMAGES: Profile(
         False, False, 5,
-        "Cameras offer best effort, and a late image is worth nothing; best effort hears reliable "
-        "ones too. Five, since an image of several datagrams may come while a callback runs.",
+        "Cameras offer best effort, and a late image is useless. Best effort also receives from "
+        "reliable cameras. The depth is five, because images may arrive while a callback runs.",
     ),
     Input.SCAN: Profile(
-        False, False, 10, "Scanners offer best effort; a few are kept for busy moments.",
+        False, False, 10, "Scanners offer best effort. A few scans are kept for busy moments.",
     ),
     Input.DEPTH: Profile(
         False, False, 5, "As images.",
@@ -43,49 +43,51 @@ PROFILES: dict[Input | Output, Profile] = {
         False, False, 5, "As camera_info.",
     ),
     Input.CAMERA_INFO: Profile(
-        False, False, 5, "Comes with each image, as the image does.",
+        False, False, 5, "Arrives with each image, so it has the same profile.",
     ),
     Input.MAP: Profile(
-        True, True, 1, "Latched by map_server and SLAM: it comes once, before this node mostly.",
+        True, True, 1, "map_server and SLAM publish it once, mostly before this node starts.",
     ),
     Input.TRANSFORMS: Profile(
-        True, False, 100, "What tf2's own listener asks for: a lost transform delays images.",
+        True, False, 100, "The profile of tf2's own listener: a lost transform delays images.",
     ),
     Input.STATIC_TRANSFORMS: Profile(
-        True, True, 100, "Latched by their publishers, each with a part of the robot.",
+        True, True, 100, "Static: each publisher sends its part of the robot once.",
     ),
     Input.COMMANDS: Profile(
-        True, False, 10, "What a program or a person says once; none may be lost.",
+        True, False, 10, "A command is sent once and must not be lost.",
     ),
     Output.HAND_RAISED: Profile(
-        True, True, 1, "A state: who comes late must know it, and only the last one counts.",
+        True, True, 1, "A state: a subscriber that starts late must get it, and only the last "
+                       "value matters.",
     ),
     Output.CUSTOMER_POSE: Profile(
-        True, False, 1, "A goal; an old one must not be driven to, so it is not latched.",
+        True, False, 1, "A goal: the robot must not drive to an old one, so it is not transient "
+                        "local.",
     ),
     Output.APPROACH_POSE: Profile(
-        True, False, 1, "As the customer's pose.",
+        True, False, 1, "The same as for the customer's pose.",
     ),
     Output.RAISED_HANDS: Profile(
-        True, True, 1, "As the Bool, with its stamp.",
+        True, True, 1, "The same as for the Bool.",
     ),
     Output.WAITING_LIST: Profile(
-        True, True, 1, "A state: a program that is started later must know who waits.",
+        True, True, 1, "A state: a program that starts later must know who waits.",
     ),
     Output.ANSWERS: Profile(
-        True, False, 10, "One for each command; none may be lost.",
+        True, False, 10, "One answer for each command; none may be lost.",
     ),
     Output.TRACKS: Profile(
-        True, False, 5, "Small, and identities should not be missed.",
+        True, False, 5, "Small, and no identity should be missed.",
     ),
     Output.MARKERS: Profile(
-        True, False, 5, "RViz asks for reliable ones.",
+        True, False, 5, "RViz requests a reliable publisher.",
     ),
     Output.GESTURE: Profile(
-        True, False, 10, "Told when it changes, so that none may be missed; a few come at once.",
+        True, False, 10, "Published when it changes, so none may be lost; a few come at once.",
     ),
     Output.DEBUG_IMAGE: Profile(
-        True, False, 1, "For people; reliable, since viewers ask for that by default.",
+        True, False, 1, "For people; reliable, because viewers request that by default.",
     ),
     Output.DIAGNOSTICS: Profile(
         True, False, 10, "As diagnostic_updater does.",

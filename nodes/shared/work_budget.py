@@ -1,4 +1,4 @@
-"""How much may perception do in an image? Less, before the node falls behind and loses images."""
+"""How much may perception do per image? Less, before the node is too slow."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _TOO_BUSY, _AT_EASE = 0.8, 0.5
 
 
 class WorkBudget:
-    """Follows the measured times; counted in model runs, as `PiecewiseDetector.set_budget`."""
+    """Follows the measured times; counted in model runs, as `Hints.model_runs`."""
 
     def __init__(self) -> None:
         self._runs: int | None = None

@@ -33,13 +33,15 @@ FRAME_NS = 33_333_333
 class OneRaisedHand:
     """A detector that always sees one raised hand ahead; it can be held up."""
 
+    work = None
+
     def __init__(self):
         self.stamps_ns = []
         self.resets = 0
         self.may_run = threading.Event()
         self.may_run.set()
 
-    def find(self, image):
+    def find(self, image, hints=None):
         self.may_run.wait(10.0)
         self.stamps_ns.append(image.stamp_ns)
         landmarks = np.full((1, 21, 2), (32.0, 24.0))  # straight ahead

@@ -63,7 +63,7 @@ def test_ros_s_own_parameters_are_passed_over(given):
 
 
 def test_a_file_for_another_namespace_is_refused_with_the_remedy(given):
-    with pytest.raises(ConfigError, match=f"needed is `{NODE}:` or `/\\*\\*/hand_detector:`"):
+    with pytest.raises(ConfigError, match=f"expected `{NODE}:` or `/\\*\\*/hand_detector:`"):
         given("hand_detector:\n  ros__parameters: {}\n")
 
 
@@ -73,7 +73,7 @@ def test_files_of_an_earlier_version_count_without_what_is_retired(given):
     remarks = []
     assert given(first, second, remark=remarks.append) == (Config(newcomer_density=0.002), False)
     [remark] = remarks
-    for words in ("0.yaml, ", "1.yaml: ", "`appearance_weight` (the colors", "deleted"):
+    for words in ("0.yaml, ", "1.yaml: ", "`appearance_weight` (comparing", "deleted"):
         assert words in remark
 
 

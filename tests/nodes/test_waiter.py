@@ -41,7 +41,7 @@ class Restaurant:
         self.ends_s = None
         self.drives, self.deaf_s = [], -1.0
         self.waiter = waiter_class(self._say, self._drive, service_s=2.0, **options)
-        wire.detector.find = lambda image: hands_at(
+        wire.detector.find = lambda image, hints: hands_at(
             [place[0] for place, (up, down) in CALLS.items() if up <= self.time_s < down]
         )
 

@@ -6,6 +6,7 @@ looked for once a scene; the node's core, which both nodes share, does the rest 
 
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -40,9 +41,10 @@ class TapedDetector:
     def __init__(self):
         self._inner, self._tape = None, {}
 
-    def find(self, image):
+    def find(self, image, hints):
         if image.stamp_ns not in self._tape:
-            self._tape[image.stamp_ns] = self._real.find(image)
+            hints = replace(hints, model_runs=None)  # as on a machine that keeps up
+            self._tape[image.stamp_ns] = self._real.find(image, hints)
         return self._tape[image.stamp_ns]
 
     @property
@@ -54,16 +56,6 @@ class TapedDetector:
     @property
     def work(self):
         return self._real.work
-
-    @property
-    def seen(self):
-        return self._real.seen
-
-    def expect(self, boxes_px):
-        self._real.expect(boxes_px)
-
-    def set_budget(self, runs):
-        pass  # as on a machine that keeps up
 
     def reset(self):
         pass

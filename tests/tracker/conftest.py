@@ -24,7 +24,9 @@ AT_ORIGIN = tuple(
 class HandAhead:
     """A detector that sees one raised hand in the middle of each image, thumb to the left."""
 
-    def find(self, image):
+    work = None
+
+    def find(self, image, hints=None):
         landmarks = np.full((1, 21, 2), (image.width / 2, 100.0))
         landmarks[:, 4, 0] -= 30.0
         landmarks[:, 9, 1] -= 30.0

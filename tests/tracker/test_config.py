@@ -1,6 +1,7 @@
 """The configuration against the specification's own words, and what it says about mistakes."""
 
 import os
+import re
 
 import pytest
 
@@ -82,8 +83,8 @@ def test_a_file_of_an_earlier_version_counts_without_what_is_retired(write, weig
     remarks = []
     assert Config.from_yaml(path, remark=remarks.append) == Config(camera_fx=500.0)
     [remark] = remarks
-    assert remark.startswith(f"{path}: parameters of an earlier version are left out")
-    for words in ("`appearance_weight` (the colors", "`measurement_model` (bearing", "deleted"):
+    assert remark.startswith(f"{path}: parameters of an earlier version are ignored")
+    for words in ("`appearance_weight` (comparing", "`measurement_model` (meas", "deleted"):
         assert words in remark
 
 
@@ -109,7 +110,7 @@ def test_a_program_that_names_a_retired_parameter_is_told_to_delete_it(make, nam
 
 
 def test_a_parameter_that_decides_nothing_any_more_is_accepted_with_a_warning():
-    with pytest.warns(FutureWarning, match="owner_hand_px decides nothing any more"):
+    with pytest.warns(FutureWarning, match="owner_hand_px has no effect any more"):
         assert Config.from_mapping({"owner_hand_px": 96.0, "max_hands": 3}) == Config(max_hands=3)
 
 
@@ -212,15 +213,15 @@ def test_other_nodes_in_the_same_file_are_left_alone(write, section_12):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "holds no parameters"),
-        ("- 1\n", "holds no parameters"),
-        ("amcl: {}\n", "names the nodes /amcl; needed is `hand_detector:`"),
+        ("", "contains no parameters"),
+        ("- 1\n", "contains no parameters"),
+        ("amcl: {}\n", "names the nodes /amcl; expected `hand_detector:`"),
         ("hand_detector: {}\n", "has no `ros__parameters:`"),
         ("hand_detector:\n  ros__parameters: 3\n", "has no `ros__parameters:`"),
         ("hand_detector:\n  ros__parameters:\n    camera_fx: [1, 2\n", "line 4"),
         ("hand_detector:\n  ros__parameters:\n\tcamera_fx: 1\n", "line 3"),
         ("hand_detector:\n  ros__parameters:\n    camera_fx: 2024-13-45\n", "allowed is a number"),
-        ("hand_detector: \x07\n", "is no YAML"),
+        ("hand_detector: \x07\n", "is not YAML"),
     ],
     ids=[
         "empty", "a list", "another node", "no parameters", "a number", "an open bracket", "a tab",
@@ -249,13 +250,14 @@ def test_a_folder_is_no_file(tmp_path):
 def test_a_file_that_is_no_text_is_named(tmp_path):
     path = tmp_path / "parameters.yaml"
     path.write_bytes(b"\xff\xfe\x00camera")
-    with pytest.raises(ConfigError, match="is no UTF-8 text"):
+    with pytest.raises(ConfigError, match="is not UTF-8 text"):
         Config.from_yaml(path)
 
 
 def test_every_parameter_has_a_description_a_group_and_a_stated_range():
     for name, info in Config.model_fields.items():
         assert info.description, name
-        assert info.description.rstrip(".") != info.description or "..." in info.description, name
+        assert re.fullmatch(r"[A-Z`].*[.]", info.description), name
+        assert "..." not in info.description, f"{name}: a description stands alone"
         assert set(parameter_extra(name)) == {"unit", "group", "level", "live", "search"}, name
         assert allowed_values(name), name

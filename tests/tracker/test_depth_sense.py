@@ -22,10 +22,12 @@ FLAT = np.ones((480, 640), np.float32)
 class TrueHands:
     """Finds the hands that a scene has up, and their owners' torsos, as a perfect eye would."""
 
+    work = None
+
     def __init__(self, scene):
         self.scene, self.stamp_ns = scene, 0
 
-    def find(self, image):
+    def find(self, image, hints=None):
         time_s = image.stamp_ns / 1e9 - self.scene.start_s
         view = Viewpoint.of(self.scene.camera, map_from_camera(self.scene, time_s))
         people = people_at(self.scene, time_s)
@@ -142,7 +144,9 @@ def dark(stamp_ns, frame="camera_link"):
 
 
 class NoHands:
-    def find(self, image):
+    work = None
+
+    def find(self, image, hints=None):
         return Hands.none()
 
     def reset(self):

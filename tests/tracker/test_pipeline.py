@@ -22,11 +22,13 @@ START_NS = 10_000_000_000
 class SeenHands:
     """A detector that finds what it is told: one raised hand at each pixel."""
 
+    work = None
+
     def __init__(self, *wrists_px):
         self.wrists_px = wrists_px
         self.resets = 0
 
-    def find(self, image):
+    def find(self, image, hints=None):
         if not self.wrists_px:
             return Hands.none()
         landmarks = np.tile(np.array(self.wrists_px, float)[:, None], (1, 21, 1))
@@ -144,7 +146,7 @@ def test_hand_raised_needs_no_lidar_and_gives_no_pose_then(located):
     result = play(located, 4, scan=None)[-1]
     assert result.hand_raised
     assert result.customer_pose is None
-    assert result.notes == (Note(NoteKind.NO_SCAN, "no scan has come"),)
+    assert result.notes == (Note(NoteKind.NO_SCAN, "no scan was received"),)
 
 
 def test_an_old_scan_is_not_used(located):
@@ -441,7 +443,7 @@ def rolled(roll_deg):
 class SeenUpright(SeenHands):
     """Finds a raised hand so many pixels to the right of an upright picture's middle."""
 
-    def find(self, image):
+    def find(self, image, hints=None):
         self.size = (image.width, image.height)
         self.wrists_px = (((image.width - 1) / 2 + 92.0, (image.height - 1) / 2),)
         return super().find(image)
@@ -662,7 +664,7 @@ class SignedHand(SeenHands):
         super().__init__((320, 200))
         self.sign = sign
 
-    def find(self, image):
+    def find(self, image, hints=None):
         drawn = draw_hands(
             self.sign, 4, np.random.default_rng(5), turn_max_deg=3.0,
             size_px=(150.0, 150.1), noise=(0.005, 0.006),

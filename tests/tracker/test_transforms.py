@@ -94,12 +94,12 @@ def test_nothing_is_extrapolated(stamp_s):
 
 
 def test_an_unknown_frame_is_named_with_those_heard_of():
-    with pytest.raises(TransformError, match=r"'odm'; heard of: base, map"):
+    with pytest.raises(TransformError, match=r"'odm'; known frames: base, map"):
         buffer_with(moving(1.0, 0.0)).lookup("odm", "base", SECOND)
 
 
 def test_an_empty_buffer_says_that_nothing_came():
-    with pytest.raises(TransformError, match="heard of: none yet"):
+    with pytest.raises(TransformError, match="known frames: none yet"):
         TransformBuffer().lookup("map", "base", 0)
 
 
@@ -114,9 +114,9 @@ def test_a_circle_of_frames_is_refused_and_changes_nothing():
         moving(1.0, 1.0, parent="map", child="odom"),
         moving(1.0, 1.0, parent="odom", child="base"),
     )
-    with pytest.raises(TransformError, match="circle"):
+    with pytest.raises(TransformError, match="loop of frames"):
         buffer.add(moving(1.0, 1.0, parent="base", child="map"))
-    with pytest.raises(TransformError, match="circle"):
+    with pytest.raises(TransformError, match="loop of frames"):
         buffer.add(moving(1.0, 1.0, parent="map", child="map"))
     assert buffer.lookup("map", "base", SECOND).translation_m == (2.0, 0.0, 0.0)
 
@@ -184,7 +184,7 @@ def test_what_is_later_than_a_stamp_can_be_forgotten():
     assert buffer.lookup("map", "base", 2 * SECOND).translation_m[0] == 2.0
     assert not buffer.can_lookup("map", "base", 5 * SECOND // 2)
     buffer.forget_after(0)
-    with pytest.raises(TransformError, match="has not come since"):
+    with pytest.raises(TransformError, match="was not received since"):
         buffer.lookup("map", "base", SECOND)
 
 
@@ -198,12 +198,10 @@ def test_a_child_that_changes_its_parent_forgets_where_it_was():
     assert buffer.lookup("map", "base", 2 * SECOND).translation_m[0] == 50.0
 
 
-def test_clearing_keeps_the_static_transforms_unless_told_otherwise():
+def test_clearing_keeps_the_static_transforms():
     buffer = buffer_with(moving(1.0, 1.0), static("base", "laser", RigidTransform()))
     buffer.clear()
     assert buffer.frames == {"base", "laser"}
-    buffer.clear(keep_static=False)
-    assert buffer.frames == set()
 
 
 def test_leading_slashes_of_frame_names_do_not_matter():

@@ -27,7 +27,8 @@ os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")
 
 app = typer.Typer(
     name="raised-hand",
-    help="Who raises a hand, where each of them stands in the map, who is served next.",
+    help="Find the people around a robot who raise a hand, where they stand, and who is served "
+    "next.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",

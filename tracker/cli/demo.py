@@ -30,21 +30,23 @@ _DEMO_JPEG_QUALITY = 92
 
 def demo_command(
     scene: Annotated[
-        str, typer.Argument(help="Scene to play: a name of config/scenes or a YAML file.")
+        str, typer.Argument(help="Scene to simulate: a name from config/scenes, or a YAML file.")
     ] = "restaurant",
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the files.")] = Path("demo"),
-    seed: Annotated[int, typer.Option(help="Of the simulated noise.", min=0)] = 1,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the output files.")] = Path(
+        "demo"
+    ),
+    seed: Annotated[int, typer.Option(help="Seed of the simulated noise.", min=0)] = 1,
     depth: Annotated[
-        bool, typer.Option("--depth", help="With a depth camera instead of the LiDAR.")
+        bool, typer.Option("--depth", help="Simulate a depth camera instead of the LiDAR.")
     ] = False,
     config: ConfigOption = None,
     param: ParameterOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Simulate a restaurant, replay it through the tracker, compare with the truth.
+    """Simulate a restaurant, run the tracker on it, compare the result with the truth.
 
-    The simulation writes an ordinary recording of camera, laser and transforms; the replay sees
-    nothing else. Ends with status 1 if a raised hand was missed or invented.
+    The simulation writes an ordinary recording of camera, laser and transforms; the tracker gets
+    nothing else. The exit status is 1 if a raised hand was missed or invented.
     """
     from tracker.replay import replay
     from tracker.replay.outputs import replay_files
@@ -65,7 +67,7 @@ def demo_command(
         result = replay(recording, out, parameters, progress=progress)
     episodes = result.episodes
     if episodes is None:
-        raise RecordingError(f"{recording}: holds no truth to compare with.")
+        raise RecordingError(f"{recording}: contains no truth to compare with.")
     if as_json:
         print_json(result.summary)
     else:

@@ -32,7 +32,8 @@ def evaluate_command(
     folder: Annotated[
         Path | None,
         typer.Argument(
-            help="Folder of photos with a labels.csv, or of such folders; without, drawn scenes."
+            help="Folder of photos with a labels.csv, or a folder of such folders. Without it, "
+            "drawn people are used."
         ),
     ] = None,
     episodes: Annotated[
@@ -40,7 +41,7 @@ def evaluate_command(
         typer.Option(
             "--episodes",
             "-n",
-            help="Raised hands, spread over the distances.",
+            help="Number of raised hands, spread over the distances.",
             min=0,
             rich_help_panel=_SCENES,
         ),
@@ -56,18 +57,18 @@ def evaluate_command(
     ] = 10,
     distances: Annotated[
         str,
-        typer.Option(help="Of those who call, in meters.", rich_help_panel=_SCENES),
+        typer.Option(help="Distances of the people who call, in meters.", rich_help_panel=_SCENES),
     ] = "1,2,3,4,5",
     seed: Annotated[
         int,
-        typer.Option(help="Same seed, same scenes.", min=0, rich_help_panel=_SCENES),
+        typer.Option(help="The same seed gives the same scenes.", min=0, rich_help_panel=_SCENES),
     ] = 1,
     jobs: JobsOption = 0,
     looks: Annotated[
         int,
         typer.Option(
-            help="Show each photo so many times, ten a second and slightly changed; a hand counts "
-            "that is raised in two looks in a row. 1 judges the photo itself, once.",
+            help="Show each photo this many times, ten per second and slightly changed. A hand "
+            "counts if it is raised in two looks in a row. 1 judges only the photo itself.",
             min=1,
             rich_help_panel=_PHOTOS,
         ),
@@ -76,16 +77,16 @@ def evaluate_command(
     param: ParameterOption = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="Folder for tables (JSON, CSV) and a picture."),
+        typer.Option("--out", "-o", help="Folder for the tables (JSON, CSV) and a picture."),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Measure how many raised hands are found, and how often one is invented.
 
-    Without a folder, figures drawn by code are the test: they vary in distance, skin, sleeve,
-    hand, build, posture, light and blur, and go as pictures through the whole pipeline without
-    LiDAR. A hand is found when its track is raised within 30 images. Such figures say how the
-    chain of search, rule and streaks holds up, and nothing about real people.
+    Without a folder, drawn people are used. They vary in distance, skin, sleeve, hand, build,
+    posture, light and blur, and go as pictures through the whole pipeline without LiDAR. A hand
+    is found when its track is raised within 30 images. Drawn people test the search, the rule
+    and the streaks; they say nothing about real people.
 
     With a folder, each of your photos is judged on its own against labels.csv:
 
@@ -202,5 +203,5 @@ def _distances(text: str) -> list[float]:
         return [float(item) for item in text.split(",")]
     except ValueError as error:
         raise ConfigError(
-            f"--distances is {text!r}; needed are meters with commas between, as 1,2.5,4."
+            f"--distances is {text!r}; expected meters separated by commas, such as 1,2.5,4."
         ) from error

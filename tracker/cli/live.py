@@ -29,22 +29,31 @@ def live_command(
     source: Annotated[
         str | None,
         typer.Argument(
-            help="A camera's number (0 by default), a device as /dev/video0, an address as "
-            "rtsp://..., a GStreamer pipeline that ends in `appsink`, or a recording or video, "
-            "which plays as if it were live."
+            help="A camera's number (0 by default), a device such as /dev/video0, an address such "
+            "as rtsp://..., a GStreamer pipeline that ends in `appsink`, or a recording or "
+            "video, which is played as if it were live."
         ),
     ] = None,
     simulated: Annotated[
-        bool, typer.Option("--simulated", help="No camera: the demo's restaurant, rendered live.")
+        bool, typer.Option("--simulated", help="Show a simulated scene instead of a camera.")
     ] = False,
-    scene: Annotated[str, typer.Option(help="Scene of --simulated.")] = "restaurant",
+    scene: Annotated[
+        str, typer.Option(help="Scene for --simulated: a name from config/scenes, or a YAML file.")
+    ] = "restaurant",
     record: Annotated[
-        Path | None, typer.Option(help="Record an .mcap that `raised-hand replay` reads.")
+        Path | None, typer.Option(help="Record into this .mcap file, for `raised-hand replay`.")
     ] = None,
     host: Annotated[
-        str, typer.Option(help="Where the page listens; others than 127.0.0.1 get a token.")
+        str,
+        typer.Option(
+            help="Address on which the page is served. With 0.0.0.0, other "
+            "computers can open it; they need the token in the printed "
+            "address."
+        ),
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Of the page; 0 takes any.", min=0, max=65535)] = _PORT,
+    port: Annotated[
+        int, typer.Option(help="Port of the page; 0 means any free port.", min=0, max=65535)
+    ] = _PORT,
     page: Annotated[bool, typer.Option("--page/--no-page", help="Serve the page.")] = True,
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
@@ -52,10 +61,10 @@ def live_command(
     config: ConfigOption = None,
     param: ParameterOption = None,
 ) -> None:
-    """Watch a camera live: who raises a hand, who waits, on a page in the browser.
+    r"""Watch a camera live: who raises a hand, who waits, on a page in the browser.
 
-    Ends with Ctrl-C, or with the recording. Needs the extra `live` for the page:
-    pip install "raised-hand-tracker[live]".
+    Ends with Ctrl-C, or at the end of a recording. The page needs the extra `live`: in the
+    project's folder, pip install ".\[live]".
     """
     import webbrowser
 
@@ -71,9 +80,11 @@ def live_command(
     parameters = parameters_from(config, param)
     check_is_no_folder("--record", record)
     if record is not None and record.suffix.lower() != ".mcap":
-        raise ConfigError(f"--record is {record}; needed is a name that ends in .mcap.")
+        raise ConfigError(f"--record is {record}; expected a name that ends in .mcap.")
     if simulated and source is not None:
-        raise ConfigError(f"--simulated watches no {source}; a scene is named by --scene {source}")
+        raise ConfigError(
+            f"--simulated needs no camera ({source} was given); name a scene with --scene {source}"
+        )
     source = source or "0"
     title = f"simulated: {scene}" if simulated else f"camera {source}"
     with ExitStack() as held:
@@ -88,7 +99,7 @@ def live_command(
         dashboard = Dashboard(parameters, title, PipelineSteering(pipeline))
         if page:
             server = held.enter_context(DashboardServer(dashboard, host, port))
-            console.print(f"The page: {server.url}  (Ctrl-C ends it)", highlight=False)
+            console.print(f"Page: {server.url}  (Ctrl-C ends it)", highlight=False)
             if browser:
                 webbrowser.open(server.url)
         teller = Teller(lambda text: console.print(text, highlight=False))

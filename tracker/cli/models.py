@@ -17,12 +17,16 @@ models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
 def models_fetch(
     source: Annotated[
         Path | None,
-        typer.Option("--from", help="The mediapipe wheel, fetched elsewhere; else pip is asked."),
+        typer.Option(
+            "--from",
+            help="The mediapipe wheel, if it was downloaded before. Without it, pip downloads it.",
+        ),
     ] = None,
     to: Annotated[
         Path | None,
         typer.Option(
-            "--to", help="Folder for the ONNX files; else RAISED_HAND_MODELS or the cache."
+            "--to",
+            help="Folder for the ONNX files. Without it, RAISED_HAND_MODELS or the user's cache.",
         ),
     ] = None,
 ) -> None:

@@ -1,4 +1,4 @@
-"""`raised-hand monte-carlo`: many noisy trials of the tracker, against bounds and truth."""
+"""`raised-hand monte-carlo`: many simulated trials of the tracker, compared with the truth."""
 
 from __future__ import annotations
 
@@ -40,11 +40,15 @@ class TableFormat(str, Enum):
 
 def monte_carlo_command(
     scenario: Annotated[
-        str | None, typer.Argument(help="Name of a scenario; none lists those there are.")
+        str | None,
+        typer.Argument(help="Name of a scenario. Without it, the scenarios are listed."),
     ] = None,
-    trials: Annotated[int, typer.Option("--trials", "-n", help="How many.", min=1)] = 100,
+    trials: Annotated[int, typer.Option("--trials", "-n", help="Number of trials.", min=1)] = 100,
     seed: Annotated[
-        int, typer.Option(help="Trial i of a seed is the same in every study.", min=0)
+        int,
+        typer.Option(
+            help="Seed of the random numbers. Trial i of a seed is the same in every study.", min=0
+        ),
     ] = 1,
     config: ConfigOption = None,
     param: ParameterOption = None,
@@ -60,21 +64,22 @@ def monte_carlo_command(
             "--out",
             "-o",
             help="Folder for study.json, trials.csv and study.png. Trials are written as they "
-            "finish; the same command again goes on with a study that was stopped.",
+            "finish. To continue a stopped study, give the same command again.",
         ),
     ] = None,
     format: Annotated[
-        TableFormat, typer.Option(help="parquet: trials.parquet as well, once all are there.")
+        TableFormat,
+        typer.Option(help="parquet: also write trials.parquet when all trials are done."),
     ] = TableFormat.CSV,
     report: ReportOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Run many noisy trials, and hold the tracker against the truth and against what is possible.
+    """Run many simulated trials, and compare the tracker with the truth.
 
-    Filter scenarios (model-matched, outliers) print RMSE over the Cramer-Rao bound and NEES;
-    known-people those of several who have to be told apart, and how often they were not; the
-    others run the whole tracker and print GOSPA, identity switches, times to raise and more. The
-    scenario's own settings hold unless --config or -p says otherwise.
+    Filter scenarios (model-matched, outliers) print the error divided by the Cramer-Rao bound, and
+    the NEES. known-people prints how often known people are confused. The others run the whole
+    tracker and print GOSPA, identity switches, times to raise and more. docs/studies.md says what
+    each figure means and what is good. --config and -p replace the scenario's own parameters.
     """
     from tracker.evaluation.studies.monte_carlo import (
         find_scenario,
@@ -107,7 +112,7 @@ def monte_carlo_command(
     _, chosen = find_scenario(scenario)
     if paths is not None:
         if not isinstance(chosen, PeopleScenario):
-            raise ConfigError(f"--paths: the scenario {scenario} has no people who walk.")
+            raise ConfigError(f"--paths: the scenario {scenario} has no walking people.")
         chosen = replace(chosen, recording=str(paths))
     if format is TableFormat.PARQUET:
         _check_parquet(out)
@@ -131,7 +136,8 @@ def monte_carlo_command(
             )
     except KeyboardInterrupt:
         if out is not None:
-            errors.print(f"\nThe trials are in {out}; the same command goes on.", soft_wrap=True)
+            text = f"\nThe trials are in {out}; give the same command again to continue."
+            errors.print(text, soft_wrap=True)
         raise
     study = replace(study, name=scenario)
     files: tuple[Path, ...] = ()
@@ -149,9 +155,9 @@ def monte_carlo_command(
 
 
 def _check_parquet(out: Path | None) -> None:
-    """Before hours of work, not after."""
+    """Fail before hours of work, not after."""
     if out is None:
-        raise ConfigError("--format parquet: needs a folder for the file, --out FOLDER.")
+        raise ConfigError("--format parquet: needs a folder for the file: --out FOLDER.")
     if find_spec("pyarrow") is None:
         raise ConfigError(
             "--format parquet: needs pyarrow: pip install '.[cluster]' in the project's folder."

@@ -1,4 +1,4 @@
-"""What the commands share: common options, where words go, how results are printed."""
+"""What the commands share: common options, how messages and results are printed."""
 
 from __future__ import annotations
 
@@ -21,26 +21,30 @@ errors = Console(stderr=True)
 
 ConfigOption = Annotated[
     Path | None,
-    typer.Option("--config", "-c", help="ROS parameter file, as config/hand_detector.yaml."),
+    typer.Option("--config", "-c", help="ROS parameter file, such as config/hand_detector.yaml."),
 ]
 ParameterOption = Annotated[
     list[str] | None,
-    typer.Option("--param", "-p", help="One parameter, as in -p ranging:=spec; may be repeated."),
+    typer.Option(
+        "--param", "-p", help="Set one parameter, such as -p ranging:=spec. May be repeated."
+    ),
 ]
 ReportOption = Annotated[
     Path | None,
-    typer.Option(help="A page with plots and tables: one .html file that needs nothing else."),
+    typer.Option(
+        help="Write a page with plots and tables: one .html file that needs no other file."
+    ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 JobsOption = Annotated[
-    int, typer.Option("--jobs", "-j", help="Processes; 0 is one per core.", min=0)
+    int, typer.Option("--jobs", "-j", help="Number of processes; 0 means one per core.", min=0)
 ]
 ExecutorOption = Annotated[
     str,
     typer.Option(
         "--executor",
-        help="Who runs the trials: processes (of this machine), or a Dask cluster by the address "
-        "of its scheduler, dask://host:port.",
+        help="What runs the trials: processes (on this machine), or a Dask cluster, given as the "
+        "address of its scheduler, dask://host:port.",
     ),
 ]
 
@@ -71,7 +75,7 @@ def parameter_files(config: Path | None, parameters: Config) -> list[Path | None
 
 
 def command_line() -> str:
-    """What the user typed, fit to be typed again."""
+    """The command line as the user typed it, quoted for the shell."""
     return shlex.join(["raised-hand", *sys.argv[1:]])
 
 
@@ -82,7 +86,7 @@ def check_is_no_folder(option: str, path: Path | None) -> None:
         ConfigError: It is a folder.
     """
     if path is not None and path.is_dir():
-        raise ConfigError(f"{option} is {path}, a folder; needed is the name of a file.")
+        raise ConfigError(f"{option} is {path}, a folder; expected the name of a file.")
 
 
 def check_is_no_file(option: str, path: Path) -> None:
@@ -92,7 +96,7 @@ def check_is_no_file(option: str, path: Path) -> None:
         ConfigError: It is a file.
     """
     if path.exists() and not path.is_dir():
-        raise ConfigError(f"{option} is {path}, a file; needed is the name of a folder.")
+        raise ConfigError(f"{option} is {path}, a file; expected the name of a folder.")
 
 
 def print_json(document: Any) -> None:
@@ -113,5 +117,5 @@ def complain(text: object) -> None:
 
 
 def note(text: str) -> None:
-    """One line on standard error about what is no failure."""
+    """One line on standard error that is not a failure."""
     errors.print(f"note: {one_line(text)}", highlight=False, markup=False, soft_wrap=True)

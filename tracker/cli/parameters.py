@@ -1,4 +1,4 @@
-"""`raised-hand parameters`: which numbers decide, what each means, and what it may be."""
+"""`raised-hand parameters`: all parameters, their meaning and allowed values."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def parameters_command(
         list[str] | None,
         typer.Argument(
             metavar="[NAME]...",
-            help="Show these alone, basic or expert.",
+            help="Show only these, basic or expert.",
             autocompletion=_begins_with,
         ),
     ] = None,

@@ -15,17 +15,28 @@ from tracker.wording import one_line
 
 
 def play_command(
-    source: Annotated[Path, typer.Argument(help="rosbag2 folder, .mcap, .db3, .bag, video.")],
-    rate: Annotated[float, typer.Option("--rate", "-r", help="Times as fast.")] = 1.0,
-    loop: Annotated[bool, typer.Option("--loop", "-l", help="Begin again at the end.")] = False,
-    start_offset: Annotated[float, typer.Option(help="Begin so many seconds in.", min=0.0)] = 0.0,
+    source: Annotated[Path, typer.Argument(help="A rosbag2 folder, .mcap, .db3, .bag or video.")],
+    rate: Annotated[float, typer.Option("--rate", "-r", help="2 plays twice as fast.")] = 1.0,
+    loop: Annotated[bool, typer.Option("--loop", "-l", help="Start again at the end.")] = False,
+    start_offset: Annotated[
+        float, typer.Option(help="Start this many seconds after the beginning.", min=0.0)
+    ] = 0.0,
     clock: Annotated[bool, typer.Option("--clock", help="Publish /clock as well.")] = False,
     best_effort: Annotated[
-        bool, typer.Option("--best-effort", help="Offer sensors' data as their drivers do.")
+        bool,
+        typer.Option(
+            "--best-effort", help="Publish sensor data as best effort, as most drivers do."
+        ),
     ] = False,
-    topic: Annotated[list[str] | None, typer.Option(help="Only this; may be repeated.")] = None,
-    remap: Annotated[list[str] | None, typer.Option(help="FROM:=TO; may be repeated.")] = None,
-    delay: Annotated[float, typer.Option(help="Seconds before the first message.", min=0.0)] = 1.0,
+    topic: Annotated[
+        list[str] | None, typer.Option(help="Publish only this topic. May be repeated.")
+    ] = None,
+    remap: Annotated[
+        list[str] | None, typer.Option(help="Rename a topic, FROM:=TO. May be repeated.")
+    ] = None,
+    delay: Annotated[
+        float, typer.Option(help="Wait this many seconds before the first message.", min=0.0)
+    ] = 1.0,
 ) -> None:
     """Publish a recording in real time to ROS 2 nodes, without ROS (needs the extra `dds`).
 
@@ -55,10 +66,14 @@ def play_command(
 
 
 def echo_command(
-    topic: Annotated[str, typer.Argument(help="As /hand_raised.")],
+    topic: Annotated[str, typer.Argument(help="Name of the topic, such as /hand_raised.")],
     once: Annotated[bool, typer.Option("--once", help="Print one message.")] = False,
-    count: Annotated[int | None, typer.Option(help="Print so many messages.", min=1)] = None,
-    timeout: Annotated[float | None, typer.Option(help="Seconds without a message.")] = None,
+    count: Annotated[
+        int | None, typer.Option(help="Stop after this many messages.", min=1)
+    ] = None,
+    timeout: Annotated[
+        float | None, typer.Option(help="Stop after this many seconds without a message.")
+    ] = None,
 ) -> None:
     """Print what ROS 2 nodes publish on a topic, without ROS (needs the extra `dds`)."""
     from nodes.dds.echo import echo

@@ -1,4 +1,4 @@
-"""`raised-hand replay`: a recording through the tracker, as the robot would have seen it."""
+"""`raised-hand replay`: run the tracker on a recording, as on the robot."""
 
 from __future__ import annotations
 
@@ -37,11 +37,13 @@ def replay_command(
     source: Annotated[
         Path,
         typer.Argument(
-            help="rosbag2 folder, .mcap, .db3, ROS 1 .bag, a video, or a folder of photos "
-            "(without LiDAR and depth, bearings only)."
+            help="A rosbag2 folder, .mcap, .db3, ROS 1 .bag, a video, or a folder of photos. "
+            "Without LiDAR and depth, ranges are only estimated from the size of hands."
         ),
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the files.")] = Path("out"),
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the output files.")] = Path(
+        "out"
+    ),
     config: ConfigOption = None,
     param: ParameterOption = None,
     image_topic: Annotated[str, typer.Option(help="Camera images.")] = "/image_raw",
@@ -56,29 +58,35 @@ def replay_command(
     map_topic: Annotated[str, typer.Option(help="The map of the room.")] = "/map",
     room_map: Annotated[
         Path | None,
-        typer.Option("--map", help="map_server's YAML file, in place of the recording's map."),
+        typer.Option("--map", help="map_server's YAML file, used instead of the recording's map."),
     ] = None,
     stamps: Annotated[
         str,
-        typer.Option(help="Which time counts: `header` (the sensor's) or `log` (the recorder's)."),
+        typer.Option(
+            help="Which time is used: `header` (the sensor's stamp) or `log` (the time "
+            "of recording)."
+        ),
     ] = "header",
     report: ReportOption = None,
     view: Annotated[
         bool, typer.Option("--view", help="Watch live in Rerun's viewer (extra `view`).")
     ] = False,
     save_view: Annotated[
-        Path | None, typer.Option(help="A recording for Rerun's viewer: an .rrd file.")
+        Path | None, typer.Option(help="Write a recording for Rerun's viewer: an .rrd file.")
     ] = None,
     serve: Annotated[
         bool, typer.Option("--serve", help="Watch on a page in the browser (extra `live`).")
     ] = False,
-    port: Annotated[int, typer.Option(help="Of --serve; 0 takes any.", min=0, max=65535)] = 8750,
+    port: Annotated[
+        int, typer.Option(help="Port for --serve; 0 means any free port.", min=0, max=65535)
+    ] = 8750,
     as_json: JsonOption = False,
 ) -> None:
-    """Run a recording through the tracker, as the robot would have seen it.
+    """Run the tracker on a recording, exactly as on the robot.
 
     Writes output.mcap (for Foxglove, RViz, ros2 bag play), tracks.csv, summary.json, overview.png
-    and debug.mp4. A recording that breaks off is replayed as far as it goes, and the status is 1.
+    and debug.mp4. A recording that is cut off is replayed as far as it can be read; the exit
+    status is then 1.
     """
     from tracker.dashboard import Dashboard, DashboardServer
     from tracker.recording import Topics, load_map
@@ -171,8 +179,8 @@ def replay_command(
 
 
 def _wait_for_interrupt() -> None:
-    """Keep the page of a replay that has ended, until Ctrl-C."""
-    note("all is replayed; the page stays until Ctrl-C")
+    """Keep the page open after the replay, until Ctrl-C."""
+    note("replay done; the page stays open until Ctrl-C")
     try:
         threading.Event().wait()
     except KeyboardInterrupt:

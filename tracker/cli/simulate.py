@@ -13,22 +13,31 @@ from tracker.terminal.progress import bar
 
 
 def simulate_command(
-    scene: Annotated[str, typer.Argument(help="A name of config/scenes, or a YAML file.")],
-    out: Annotated[Path, typer.Option("--out", "-o", help=".mcap file, or rosbag2 folder.")],
-    seed: Annotated[int, typer.Option(help="Of all noise; same seed, same bytes.", min=0)] = 1,
+    scene: Annotated[str, typer.Argument(help="A name from config/scenes, or a YAML file.")],
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="Output: an .mcap file, or a rosbag2 folder.")
+    ],
+    seed: Annotated[
+        int, typer.Option(help="Seed of all noise. The same seed gives the same file.", min=0)
+    ] = 1,
     jpeg: Annotated[
         int | None,
-        typer.Option(help="Images as JPEG of this quality; a twentieth the size.", min=1, max=100),
+        typer.Option(
+            help="Write images as JPEG of this quality; the file is then about a "
+            "twentieth of the size.",
+            min=1,
+            max=100,
+        ),
     ] = None,
     depth: Annotated[
-        bool, typer.Option("--depth", help="With a depth camera, also where the scene has none.")
+        bool, typer.Option("--depth", help="Add a depth camera, even if the scene has none.")
     ] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace what is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
-    """Play a scene of people, tables and a robot into a recording.
+    """Simulate a scene of people, tables and a robot, and write it as a recording.
 
-    Rendered camera images, ray-cast scans, transforms, CameraInfo, and the truth on a topic of its
-    own. Scenes are YAML; those in config/scenes are examples.
+    The recording has rendered camera images, ray-cast scans, transforms, CameraInfo, and the truth
+    on a topic of its own. Scenes are YAML files; see config/scenes for examples.
     """
     simulate(scene, out, seed, jpeg, force=force, with_depth=depth)
     print_files((out,))
@@ -37,7 +46,7 @@ def simulate_command(
 def simulate(
     scene: str, out: Path, seed: int, jpeg: int | None, *, force: bool, with_depth: bool = False
 ) -> None:
-    """Play a scene into a recording, with a bar that tells how far it is."""
+    """Write a scene as a recording, with a progress bar."""
     from tracker.recording import recording_files
     from tracker.simulation import load_scene, with_depth_camera, write_simulation
 

@@ -1,4 +1,4 @@
-"""`raised-hand tune`: the parameters that serve your robot best, and whether they truly do."""
+"""`raised-hand tune`: search for the best parameters, and test them on other data."""
 
 from __future__ import annotations
 
@@ -44,46 +44,54 @@ def tune_command(
     source: Annotated[
         str | None,
         typer.Argument(
-            help="A scenario by name, or a recording that `replay` reads. Without one, the "
-            "scenarios and everything that can be tuned are listed."
+            help="Name of a scenario, or a recording that `replay` can read. Without it, the "
+            "scenarios and the parameters that can be tuned are listed."
         ),
     ] = None,
     params: Annotated[
         str | None,
         typer.Option(
             help="What to search, separated by commas: names of parameters, or process, "
-            "measurement, clutter, life, method. Default: all but the methods, and all but life "
-            "on recordings."
+            "measurement, clutter, life, method. Default: all except method, and on recordings "
+            "also except life."
         ),
     ] = None,
     trials: Annotated[
-        int, typer.Option("--trials", "-n", help="In all; a study that is there counts.", min=1)
+        int,
+        typer.Option(
+            "--trials",
+            "-n",
+            help="Number of trials in all, including those of an earlier run.",
+            min=1,
+        ),
     ] = 200,
     storage: Annotated[
         str | None,
-        typer.Option(help="Optuna storage, as in sqlite:///my.db; by default tuning.db in --out."),
+        typer.Option(help="Optuna storage, such as sqlite:///my.db. Default: tuning.db in --out."),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Of the scenes, and of the search.", min=0)] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of the scenes and of the search.", min=0)] = 1,
     config: ConfigOption = None,
     param: ParameterOption = None,
     jobs: JobsOption = 1,
     out: Annotated[
-        Path, typer.Option("--out", "-o", help="Folder for best.yaml, tuning.json, tuning.png.")
+        Path, typer.Option("--out", "-o", help="Folder for best.yaml, tuning.json and tuning.png.")
     ] = Path("tuning"),
     report: ReportOption = None,
     as_json: JsonOption = False,
     scenes: Annotated[
         int,
-        typer.Option(help="Scenes that every trial sees.", min=1, rich_help_panel=_SCENES),
+        typer.Option(help="Scenes that every trial runs.", min=1, rich_help_panel=_SCENES),
     ] = 6,
     scene_s: Annotated[
         float,
-        typer.Option(help="Length of each, in seconds.", min=1.0, rich_help_panel=_SCENES),
+        typer.Option(help="Length of each scene, in seconds.", min=1.0, rich_help_panel=_SCENES),
     ] = 8.0,
     unseen: Annotated[
         int,
         typer.Option(
-            help="Whole scenes, seen by no trial, for the verdict.", min=2, rich_help_panel=_SCENES
+            help="Number of other scenes for the final test; no trial uses them.",
+            min=2,
+            rich_help_panel=_SCENES,
         ),
     ] = 40,
     image_topic: Annotated[
@@ -102,23 +110,23 @@ def tune_command(
         str, typer.Option(help="Lasting transforms.", rich_help_panel=_RECORDINGS)
     ] = "/tf_static",
 ) -> None:
-    """Search for the parameters that serve a scenario or your own recording best.
+    """Search for the best parameters for a scenario or for your own recording.
 
-    On a scenario truth is known, and less GOSPA is better. On a recording,
-    better is who foretells where the next measurement will be. The verdict
-    is about what the search has never seen: other scenes, or the rest of the
+    On a scenario the truth is known, and less GOSPA is better. On a recording,
+    it is better if the tracker predicts the next measurement well. The final test
+    uses data that the search has not used: other scenes, or the rest of the
     recording.
 
-    [bold]raised-hand tune cheap-lidar[/bold]   what a cheap laser wants
+    [bold]raised-hand tune cheap-lidar[/bold]   for a cheap laser
 
-    [bold]raised-hand tune my_robot.mcap[/bold]   what your own robot wants
+    [bold]raised-hand tune my_robot.mcap[/bold]   for your own robot
 
-    [bold]raised-hand tune rough --params process,range_std_m -n 50[/bold]   only these
+    [bold]raised-hand tune rough --params process,range_std_m -n 50[/bold]   only these parameters
 
     [bold]raised-hand tune rough -c robot.yaml -j 2[/bold]   from your own file, two processes
 
-    Stop it with Ctrl-C; the same command goes on where it was. best.yaml is a
-    whole parameter file: raised-hand replay -c tuning/best.yaml, or the node's.
+    Stop it with Ctrl-C; give the same command again to continue. best.yaml is a
+    complete parameter file, for raised-hand replay -c tuning/best.yaml and for the node.
     """
     from tracker.evaluation.trials.scenario import SCENARIOS, default_config
     from tracker.evaluation.tuning.objective import scenario_objective
@@ -140,7 +148,7 @@ def tune_command(
     is_scenario = source in SCENARIOS
     if not is_scenario and not Path(source).exists():
         raise ConfigError(
-            f"{source}: is neither a scenario nor a recording that is there; `raised-hand tune` "
+            f"{source}: is neither a scenario nor an existing recording; `raised-hand tune` "
             "alone lists the scenarios."
         )
     words = [word.strip() for word in params.split(",")] if params else DEFAULT_KINDS
@@ -188,7 +196,8 @@ def tune_command(
                 judged=judged,
             )
     except KeyboardInterrupt:
-        errors.print(f"\nThe trials are in {address}; the same command goes on.", soft_wrap=True)
+        text = f"\nThe trials are in {address}; give the same command again to continue."
+        errors.print(text, soft_wrap=True)
         raise
     written: tuple[Path, ...] = write_tuning(tuning, out)
     if report is not None:

@@ -29,8 +29,8 @@ def compiled(
 
     Args:
         function: Plain; what it calls is decorated as `loops` says.
-        signature: Numba's. Said beforehand, so that no array ever leads to another compilation;
-            None compiles when it is called, for what it is given.
+        signature: Numba's types of the arguments. Said beforehand, so that no array ever leads
+            to another compilation; None compiles when it is called, for what it is given.
         folder: Where it is taken from, or kept; None keeps it nowhere.
         may_compile: Otherwise it is only taken from there.
 
@@ -93,7 +93,7 @@ def _cache_in(folder: Path, may_compile: bool) -> type[FunctionCache]:
                 except _GARBLED:  # compile it again
                     self.flush()
             if kept is None and not may_compile:
-                raise FileNotFoundError(f"{folder} has no machine code that can be read")
+                raise FileNotFoundError(f"{folder} has no compiled code that can be read")
             return kept
 
         def save_overload(self, sig: Any, data: Any) -> None:

@@ -1,4 +1,4 @@
-"""Where is machine code kept? In the user's cache, or where NUMBA_CACHE_DIR says.
+"""Where is compiled code stored? In the user's cache, or in NUMBA_CACHE_DIR.
 
 The folder is named after the content of the sources, the versions and the processor, so that
 nothing stale is ever loaded, and no installation loses what is not.

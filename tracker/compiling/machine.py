@@ -1,4 +1,4 @@
-"""Machine code that is compiled by numba once on a machine, in the background, and kept.
+"""Compiled code: numba compiles it once on a machine, in the background.
 
 Until it is there, functions run as the Python that they are: nothing waits for the compiler but
 `Machine.finish`. The compiler is a process of its own, so that it takes no time from what
@@ -76,14 +76,17 @@ class Machine:
         except FileNotFoundError:
             pass  # cut off, or for another processor
         except ImportError as error:
-            warn(f"numba is installed and cannot be loaded ({error}); Python tracks, slowly.")
+            warn(
+                f"numba is installed but cannot be loaded ({error}); the tracker runs as "
+                "Python, which is slow."
+            )
             return
-        say("Compiling the tracker, once on this machine: a quarter of a minute ...")
+        say("Compiling the tracker, once on this machine, for about 15 s ...")
         trouble = files.trouble_with(folder)
         if trouble:
             warn(
-                f"The compiled tracker cannot be kept ({trouble}), so that every start compiles "
-                "it; set NUMBA_CACHE_DIR to a folder that may be written."
+                f"The compiled tracker cannot be stored ({trouble}), so every start compiles it "
+                "again; set NUMBA_CACHE_DIR to a writable folder."
             )
             folder = None
         self._process = os.getpid()  # one that is forked off has no such thread
@@ -117,7 +120,11 @@ class Machine:
                     [*command, str(place)], stdout=subprocess.DEVNULL, env={**os.environ, **around}
                 )
             except OSError as error:
-                LOG.warning("No compiler can be started (%s); Python tracks, slowly.", error)
+                LOG.warning(
+                    "The compiler cannot be started (%s); the tracker runs as Python, "
+                    "which is slow.",
+                    error,
+                )
                 return
             while compiler.poll() is None:
                 if self._leaves.wait(_LOOK_S):
@@ -127,7 +134,10 @@ class Machine:
                 self.code = self._build(place)
                 LOG.info("The tracker is compiled.")
             else:
-                LOG.warning("The compiler failed (its words are above); Python tracks, slowly.")
+                LOG.warning(
+                    "The compiler failed (its output is above); the tracker runs as "
+                    "Python, which is slow."
+                )
 
     def _leave(self) -> None:
         """The process ends: so does the compiler, and what is half loaded is loaded first."""

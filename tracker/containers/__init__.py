@@ -1,4 +1,4 @@
-"""What travels through the rooms: one typed, frozen container per concept.
+"""The data types that are passed between the rooms: typed, frozen containers.
 
 Row i of every array of a batch is the same thing (the same hand, measurement, person). Arrays are
 made read-only, stamps are integer nanoseconds, frames and units stand in the names.
@@ -11,14 +11,13 @@ from tracker.containers.arrays import (
     IntArray,
     check_stamp,
 )
-from tracker.containers.depth_image import DepthArray, DepthImage, depth_in_meters
 from tracker.containers.hands import Hands, Refusal
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
 from tracker.containers.occupancy_grid import LocatedMap, OccupancyGrid
 from tracker.containers.results import FrameResult, PerceptionWork, Pose, Truth
 from tracker.containers.sensor_kind import SensorKind
-from tracker.containers.sensors import CameraImage, Scan
+from tracker.containers.sensors import CameraImage, DepthArray, DepthImage, Scan, depth_in_meters
 from tracker.containers.tracks import Tracks
 from tracker.containers.view import View
 from tracker.containers.waiting_list import Caller, CallState, WaitingList

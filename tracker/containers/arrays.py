@@ -1,10 +1,9 @@
-"""How are batches of arrays kept: of one type, of one length, and read-only?"""
+"""Which types do arrays have, and how are they made read-only?"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,13 +15,10 @@ IntArray: TypeAlias = NDArray[np.int64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 ImageArray: TypeAlias = NDArray[np.uint8]
 NUMBERS, COUNTS, FLAGS = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.bool_)
-#: What stands in each row of a batch's arrays: the type of the numbers and the shape.
-Layout: TypeAlias = Mapping[str, tuple["np.dtype[Any]", tuple[int, ...]]]
-_Batch = TypeVar("_Batch")
 
 
 def check_stamp(stamp_ns: int) -> None:
-    """Refuse what is no stamp.
+    """Refuse an invalid stamp.
 
     Raises:
         ClockError: Negative, beyond 63 bits, or not an integer.
@@ -43,57 +39,9 @@ def frozen(value: ArrayLike, dtype: np.dtype[Any] = NUMBERS) -> NDArray[Any]:
 
 
 def sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """The very array, read-only from now on; for its maker, who is done with it."""
+    """Make this array itself read-only; for the code that has just made it."""
     array.setflags(write=False)
     return array
-
-
-def check_rows(batch: Any, count: int, layout: Layout) -> None:
-    """Make a batch's arrays read-only and see to it that each has as many rows.
-
-    Raises:
-        ShapeError: An array has other rows than the layout says, or another number of them.
-    """
-    fits = True
-    for name, (dtype, row) in layout.items():
-        given = getattr(batch, name)
-        array = frozen(given, dtype)
-        if array is not given:
-            object.__setattr__(batch, name, array)
-        fits = fits and array.shape == (count, *row)
-    if not fits:
-        shapes = ", ".join(f"{name} {getattr(batch, name).shape}" for name in layout)
-        raise ShapeError(f"{type(batch).__name__} disagree in shape: {shapes}.")
-
-
-def trusted(kind: type[_Batch], /, **columns: Any) -> _Batch:
-    """A batch whose arrays are known to fit and to be read-only: nobody looks at them again.
-
-    Frozen classes with slots are filled one call after the other, so these have none.
-    """
-    batch = object.__new__(kind)
-    batch.__dict__.update(columns)
-    return batch
-
-
-def select(batch: _Batch, rows: Any) -> _Batch:
-    """The same batch with some rows alone; one number gives a batch of one.
-
-    Raises:
-        ShapeError: The rows are no mask, slice or list of numbers.
-    """
-    if isinstance(rows, (int, np.integer)):
-        rows = [rows]
-    chosen = dict(batch.__dict__)
-    for name, each in chosen.items():
-        if isinstance(each, np.ndarray):
-            part = each[rows]
-            if part.ndim != each.ndim:
-                raise ShapeError(
-                    f"Rows {rows!r} were asked for; needed: a mask, a slice or a list of numbers."
-                )
-            chosen[name] = sealed(part)
-    return trusted(type(batch), **chosen)
 
 
 @lru_cache(maxsize=64)
@@ -113,7 +61,7 @@ def numbers(name: str, value: ArrayLike) -> FloatArray:
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ShapeError(f"`{name}` is {value!r}; needed is an array of numbers.") from error
+        raise ShapeError(f"`{name}` is {value!r}; expected an array of numbers.") from error
 
 
 def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
@@ -126,4 +74,4 @@ def fill(name: str, column: NDArray[Any], value: ArrayLike) -> None:
         column[...] = value
     except (TypeError, ValueError, OverflowError) as error:
         shape = numbers(name, value).shape
-        raise ShapeError(f"`{name}` has shape {shape}; needed is {column.shape}.") from error
+        raise ShapeError(f"`{name}` has shape {shape}; expected {column.shape}.") from error

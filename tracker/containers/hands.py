@@ -3,36 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tracker.containers.arrays import (
-    COUNTS,
-    FLAGS,
-    NUMBERS,
-    BoolArray,
-    FloatArray,
-    IntArray,
-    check_rows,
-    select,
-)
-
-_LAYOUT = {
-    "landmarks_px": (NUMBERS, (21, 2)),
-    "score": (NUMBERS, ()),
-    "right": (NUMBERS, ()),
-    "raised": (FLAGS, ()),
-    "raise_measure": (NUMBERS, ()),
-    "torso_px": (NUMBERS, (2,)),
-    "refusal": (COUNTS, ()),
-    "seated": (NUMBERS, ()),
-    "gesture": (COUNTS, ()),
-    "wrist_only": (FLAGS, ()),
-}
+from tracker.containers.arrays import BoolArray, FloatArray, IntArray
+from tracker.containers.rows import Column, Rows
 
 
 class Refusal(IntEnum):
@@ -76,76 +54,40 @@ _WORDS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Hands:
+class Hands(Rows):
     """Every hand found in one image; row i of each array is the same hand.
 
     Attributes:
         landmarks_px: Shape (H, 21, 2): x to the right, y down, in pixels of the full image, in
             MediaPipe's order (0 wrist, 4 thumb tip, 9 middle finger's root, 12 its tip, 20 pinky
             tip).
-        score: Shape (H,): the landmark model's word that this is a hand, in [0, 1].
+        score: Shape (H,): the landmark model's probability that this is a hand, in [0, 1].
         right: Shape (H,): probability of a right hand, in [0, 1].
-        raised: Shape (H,), bool: the raise rule's verdict on this one image.
+        raised: Shape (H,), bool: whether the raise rule calls it raised in this image.
         raise_measure: Shape (H,): what the rule compared with its threshold (a probability for the
             `evidence` rule, image heights for `image`, palm lengths for `palm`).
-        torso_px: Shape (H, 2): the middle of shoulders and hips of whose hand it is; NaN where
-            that is not known. None means that of no hand.
-        refusal: Shape (H,), int64: of each hand that is not raised the `Refusal`; 0 for raised
-            ones, and where the detector gives no reason. None means 0 for all.
-        seated: Shape (H,), in [0, 1]: whether whose hand it is sits; NaN where that is not known.
-            None means that of no hand.
-        gesture: Shape (H,), int64: what the hand has said of late, a `tracker.gesture.Gesture`;
-            NONE is 0, and stands where nobody is sure. None means 0 for all.
-        wrist_only: Shape (H,), bool: a forearm ends there, and the landmarks but the wrist are
-            supposed. None means that of no hand.
+        torso_px: Shape (H, 2): the middle of the owner's shoulders and hips; NaN where unknown.
+            None means unknown for all.
+        refusal: Shape (H,), int64: the `Refusal`: why a hand is not raised; 0 for raised hands,
+            and where there is no reason. None means 0 for all.
+        seated: Shape (H,), in [0, 1]: whether the owner sits; NaN where unknown. None means
+            unknown for all.
+        gesture: Shape (H,), int64: the `tracker.gesture.Gesture`; 0 (NONE) where it is not sure.
+            None means 0 for all.
+        wrist_only: Shape (H,), bool: only a forearm was seen, and all landmarks except the wrist
+            are assumed. None means False for all.
     """
 
-    landmarks_px: FloatArray
+    landmarks_px: Annotated[FloatArray, Column((21, 2))]
     score: FloatArray
     right: FloatArray
     raised: BoolArray
     raise_measure: FloatArray
-    torso_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
-    refusal: IntArray = None  # type: ignore[assignment]  # 0 takes its place
-    seated: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
-    gesture: IntArray = None  # type: ignore[assignment]  # 0 takes its place
-    wrist_only: BoolArray = None  # type: ignore[assignment]  # False takes its place
-
-    def __post_init__(self) -> None:
-        count = len(self.landmarks_px)
-        unknown: dict[str, NDArray[Any]] = {
-            "torso_px": np.full((count, 2), np.nan),
-            "seated": np.full(count, np.nan),
-            "refusal": np.zeros(count, np.int64),
-            "gesture": np.zeros(count, np.int64),
-            "wrist_only": np.zeros(count, np.bool_),
-        }
-        for name, value in unknown.items():
-            if getattr(self, name) is None:
-                object.__setattr__(self, name, value)
-        check_rows(self, count, _LAYOUT)
-
-    def __len__(self) -> int:
-        return len(self.score)
-
-    def __getitem__(self, rows: Any) -> Hands:
-        return select(self, rows)
-
-    @staticmethod
-    def none() -> Hands:
-        """No hand at all."""
-        nothing = np.zeros(0)
-        return Hands(np.zeros((0, 21, 2)), nothing, nothing, nothing.astype(bool), nothing)
-
-    @staticmethod
-    def concatenate(*parts: Hands) -> Hands:
-        """Join batches of one image, rows in the order given."""
-        return Hands(
-            **{
-                item.name: np.concatenate([getattr(part, item.name) for part in parts])
-                for item in fields(Hands)
-            }
-        )
+    torso_px: Annotated[FloatArray, Column((2,), missing=np.nan)] = None  # type: ignore[assignment]
+    refusal: Annotated[IntArray, Column(missing=0)] = None  # type: ignore[assignment]
+    seated: Annotated[FloatArray, Column(missing=np.nan)] = None  # type: ignore[assignment]
+    gesture: Annotated[IntArray, Column(missing=0)] = None  # type: ignore[assignment]
+    wrist_only: Annotated[BoolArray, Column(missing=False)] = None  # type: ignore[assignment]
 
     @property
     def wrist_px(self) -> FloatArray:
@@ -154,7 +96,7 @@ class Hands:
 
     @property
     def is_owned(self) -> BoolArray:
-        """Shape (H,): the torso of whose hand it is is known."""
+        """Shape (H,): the owner's torso is known."""
         return np.asarray(np.isfinite(self.torso_px).all(axis=-1))
 
     @property

@@ -35,8 +35,8 @@ _POSITIONS = frozenset({int(SensorKind.POSITION)})
 
 #: Covariances that may be zero, and when to leave them out.
 _WITHOUT = {
-    "sensor_pose_covariance": "Leave it out (None) where the sensor's pose is well known.",
-    "bias_covariance": "Leave it out (None) where no part of the error lasts.",
+    "sensor_pose_covariance": "Leave it out (None) if the sensor's pose is well known.",
+    "bias_covariance": "Leave it out (None) if no part of the error lasts.",
 }
 
 #: What becomes of rows that a tracker cannot use.
@@ -60,7 +60,7 @@ def check_measurements(claims: Measurements) -> None:
     row = int(np.flatnonzero(np.logical_or.reduce([fault.rows for fault in faults]))[0])
     fault = next(fault for fault in faults if fault.rows[row])
     raise MeasurementError(
-        f"Row {row} of {len(claims)} measurements has {fault.got(row)}; needed: {fault.needed}. "
+        f"Row {row} of {len(claims)} measurements has {fault.got(row)}; expected: {fault.needed}. "
         f"{fault.remedy}"
     )
 
@@ -77,7 +77,7 @@ def usable_rows(claims: Measurements) -> BoolArray:
 
 
 def are_ordinary(known: FloatArray, std: FloatArray, sensor_pose: FloatArray) -> bool:
-    """Whether bearings and ranges are so plain that they need no closer look.
+    """Whether bearings and ranges are so ordinary that they need no detailed check.
 
     This asks for more than is needed, in a microsecond. A sum of squares bounds each of its
     numbers, `argmin` finds NaN before any number, and NaN fails every comparison.
@@ -105,7 +105,7 @@ def _sum_of_squares(numbers: FloatArray) -> float:
 
 
 def _are_plain(claims: Measurements) -> bool:
-    """Nothing is wrong and nothing unusual; said of all rows at once, it costs microseconds.
+    """A quick check of all rows at once: nothing is wrong and nothing unusual.
 
     A sum of squares bounds each of its numbers, and NaN fails every comparison.
     """
@@ -150,7 +150,7 @@ class _Fault(NamedTuple):
 
 
 def _faults(claims: Measurements) -> Iterator[_Fault]:
-    """All that may be wrong, the plainest first."""
+    """Everything that may be wrong, the simplest first."""
     known = (claims.kind >= 0) & (claims.kind < len(SensorKind))
     names = ", ".join(f"{kind.value} ({kind.name})" for kind in SensorKind)
     yield _Fault(
@@ -178,8 +178,8 @@ def _faults_of_values(values: FloatArray, kind: FloatArray) -> Iterator[_Fault]:
     yield _Fault(
         (absent & ~is_nan).any(axis=1),
         lambda row: f"values {values[row].tolist()} and kind {SensorKind(kind[row]).name}",
-        "NaN in the place of what this kind does not measure",
-        "Use polar, which chooses the kind by what is NaN.",
+        "NaN for the numbers that this kind does not measure",
+        "Use polar, which chooses the kind by the NaN values.",
     )
     limit = f"a finite number below {ABSURD_M:g}"
     yield _Fault(
@@ -224,13 +224,13 @@ def _faults_of_noise(covariance: FloatArray, kind: FloatArray) -> Iterator[_Faul
         wrong.any(axis=1) | ~is_definite,
         lambda row: f"the covariance {covariance[row].tolist()}",
         f"a symmetric positive definite matrix, variances between {VARIANCE_MIN:g} and "
-        f"{VARIANCE_MAX:g}; 1 and no correlation in the place of what is not measured",
+        f"{VARIANCE_MAX:g}; 1 and no correlation for numbers that are not measured",
         "State the sensor's true noise.",
     )
 
 
 def _are_definite(noise: FloatArray, alone: BoolArray | bool) -> BoolArray:
-    """Shape (M,): symmetric, and with a correlation below 1; none where a number is alone.
+    """Shape (M,): symmetric, with a correlation below 1, and 0 for single numbers.
 
     The variances are left to others.
     """

@@ -1,9 +1,9 @@
-"""What do the sensors claim about people?"""
+"""What did the sensors measure of people?"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,18 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 from tracker.containers.arrays import (
     COUNTS,
     FLAGS,
-    NUMBERS,
     BoolArray,
     FloatArray,
     IntArray,
-    check_rows,
     constant,
     fill,
     frozen,
     numbers,
     sealed,
-    select,
-    trusted,
 )
 from tracker.containers.measurement_check import (
     Refuse,
@@ -30,24 +26,13 @@ from tracker.containers.measurement_check import (
     check_measurements,
     usable_rows,
 )
+from tracker.containers.rows import Column, Rows, trusted
 from tracker.containers.sensor_kind import SensorKind
 from tracker.errors import MeasurementError, ShapeError
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-_LAYOUT = {
-    "values": (NUMBERS, (2,)),
-    "covariance": (NUMBERS, (2, 2)),
-    "kind": (COUNTS, ()),
-    "sensor_pose": (NUMBERS, (3,)),
-    "raised": (FLAGS, ()),
-    "person": (COUNTS, ()),
-    "hand": (COUNTS, ()),
-    "sensor_pose_covariance": (NUMBERS, (3, 3)),
-    "identity": (COUNTS, ()),
-    "bias_covariance": (NUMBERS, (2, 2)),
-}
 _ORIGIN = constant(0.0, (3,))
 #: Of a bearing and a range: the kind, by whether the bearing and whether the range is NaN.
 _KIND_BY_MISSING = np.array(
@@ -68,8 +53,8 @@ class _Details(TypedDict, total=False):
 
 
 @dataclass(frozen=True, eq=False)
-class Measurements:
-    """What the sensors claim about people at one instant; row i of each array is one claim.
+class Measurements(Rows):
+    """What sensors measured of people at one instant; row i of each array is one measurement.
 
     A tracker can use every row: numbers are finite and below 1e9, covariances are positive
     definite. What cannot be used is refused where it is made.
@@ -102,38 +87,20 @@ class Measurements:
         MeasurementError: A tracker cannot use a row; see `tracker.containers.measurement_check`.
     """
 
-    values: FloatArray
-    covariance: FloatArray
+    values: Annotated[FloatArray, Column((2,))]
+    covariance: Annotated[FloatArray, Column((2, 2))]
     kind: IntArray
-    sensor_pose: FloatArray
+    sensor_pose: Annotated[FloatArray, Column((3,))]
     raised: BoolArray
     person: IntArray
     hand: IntArray
-    sensor_pose_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
-    identity: IntArray = None  # type: ignore[assignment]  # -1 takes its place
-    bias_covariance: FloatArray = None  # type: ignore[assignment]  # zeros take its place
+    sensor_pose_covariance: Annotated[FloatArray, Column((3, 3), missing=0.0)] = None  # type: ignore[assignment]
+    identity: Annotated[IntArray, Column(missing=-1)] = None  # type: ignore[assignment]
+    bias_covariance: Annotated[FloatArray, Column((2, 2), missing=0.0)] = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        count = len(self.values)
-        if self.sensor_pose_covariance is None:
-            object.__setattr__(self, "sensor_pose_covariance", constant(0.0, (count, 3, 3)))
-        if self.identity is None:
-            object.__setattr__(self, "identity", constant(-1, (count,), COUNTS))
-        if self.bias_covariance is None:
-            object.__setattr__(self, "bias_covariance", constant(0.0, (count, 2, 2)))
-        check_rows(self, count, _LAYOUT)
+        super().__post_init__()
         check_measurements(self)
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-    def __getitem__(self, rows: Any) -> Measurements:
-        return select(self, rows)
-
-    @staticmethod
-    def none() -> Measurements:
-        """No measurement at all."""
-        return Measurements.cartesian(np.zeros((0, 2)), np.zeros((0, 2, 2)))
 
     @staticmethod
     def polar(
@@ -259,7 +226,7 @@ class Measurements:
         if xy.ndim == 1 and xy.size in (0, 2):
             xy = xy.reshape(-1, 2)
         if xy.ndim != 2 or xy.shape[1] != 2:
-            raise ShapeError(f"`xy_m` has shape {xy.shape}; needed is (M, 2), a row for each.")
+            raise ShapeError(f"`xy_m` has shape {xy.shape}; expected (M, 2), a row for each.")
         count = len(xy)
         spread = np.empty((count, 2, 2))
         fill("covariance", spread, covariance)
@@ -278,20 +245,11 @@ class Measurements:
         )
         return _usable(claims, refuse)
 
-    @staticmethod
-    def concatenate(*parts: Measurements) -> Measurements:
-        """Join batches of one instant, rows in the order given."""
-        joined = {
-            name: sealed(np.concatenate([getattr(part, name) for part in parts]))
-            for name in _LAYOUT
-        }
-        return trusted(Measurements, **joined)
-
 
 def _usable(claims: Measurements, refuse: Refuse, is_ordinary: bool = False) -> Measurements:
     """The rows that a tracker can use; all of them where nothing needs a closer look."""
     if refuse not in ("raise", "drop"):
-        raise MeasurementError(f"`refuse` is {refuse!r}; needed is 'raise' or 'drop'.")
+        raise MeasurementError(f"`refuse` is {refuse!r}; expected 'raise' or 'drop'.")
     if is_ordinary:
         return claims
     if refuse == "drop":
@@ -358,6 +316,6 @@ def _whole(name: str, value: ArrayLike) -> ArrayLike:
     number = numbers(name, value)
     if not ((number == np.floor(number)) & (np.abs(number) < 2.0**63)).all():
         raise MeasurementError(
-            f"`{name}` is {value!r}; needed are whole numbers below 2^63, -1 where nobody knows."
+            f"`{name}` is {value!r}; expected whole numbers below 2^63, -1 if it is unknown."
         )
     return value

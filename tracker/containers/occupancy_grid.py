@@ -1,4 +1,4 @@
-"""Where is the floor taken, by a map that was made before? nav_msgs/OccupancyGrid in our terms."""
+"""Which cells of the floor are occupied? The map of nav_msgs/OccupancyGrid."""
 
 from __future__ import annotations
 
@@ -47,21 +47,21 @@ class OccupancyGrid:
         object.__setattr__(self, "cells", frozen(self.cells, np.dtype(np.int8)))
         if self.cells.ndim != 2 or 0 in self.cells.shape:
             raise ShapeError(
-                f"A map has cells of shape {self.cells.shape}; needed are rows and columns."
+                f"A map has cells of shape {self.cells.shape}; expected rows and columns."
             )
         if not (np.isfinite(self.resolution_m) and self.resolution_m > 0.0):
             raise ShapeError(
-                f"A map has a resolution of {self.resolution_m} m; needed is the side of a cell, "
+                f"A map has a resolution of {self.resolution_m} m; expected the side of a cell, "
                 "above 0."
             )
         if len(self.origin) != 3 or not np.all(np.isfinite(self.origin)):
             raise ShapeError(
-                f"A map has the origin {self.origin}; needed are x, y and yaw, all finite."
+                f"A map has the origin {self.origin}; expected x, y and yaw, all finite."
             )
         low, high = int(self.cells.min()), int(self.cells.max())
         if low < UNKNOWN or high > 100:
             raise ShapeError(
-                f"A map holds the numbers {low} to {high}; needed are 0 to 100, and {UNKNOWN} "
+                f"A map holds the numbers {low} to {high}; expected 0 to 100, and {UNKNOWN} "
                 "for unknown."
             )
 

@@ -1,26 +1,18 @@
-"""What did a frame lead to, and what was true?"""
+"""The result of a frame, and the simulated truth."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
-from tracker.containers.arrays import (
-    COUNTS,
-    FLAGS,
-    NUMBERS,
-    BoolArray,
-    FloatArray,
-    IntArray,
-    check_rows,
-    check_stamp,
-    frozen,
-)
+from tracker.containers.arrays import BoolArray, FloatArray, IntArray, check_stamp, frozen
 from tracker.containers.hands import Hands
 from tracker.containers.located_scan import LocatedScan
 from tracker.containers.measurements import Measurements
 from tracker.containers.occupancy_grid import LocatedMap
+from tracker.containers.rows import Column, Rows
 from tracker.containers.tracks import Tracks
 from tracker.containers.waiting_list import WaitingList
 from tracker.errors import ShapeError
@@ -50,20 +42,12 @@ class Pose:
         object.__setattr__(self, "covariance_m2", frozen(self.covariance_m2))
         if self.covariance_m2.shape != (2, 2):
             raise ShapeError(
-                f"A pose's covariance has shape {self.covariance_m2.shape}; needed is (2, 2)."
+                f"A pose's covariance has shape {self.covariance_m2.shape}; expected (2, 2)."
             )
 
 
-_TRUTH = {
-    "id": (COUNTS, ()),
-    "xy_m": (NUMBERS, (2,)),
-    "hand_up": (FLAGS, ()),
-    "in_view": (FLAGS, ()),
-}
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Truth:
+@dataclass(frozen=True, eq=False)
+class Truth(Rows):
     """Where simulated people really are; it never reaches the pipeline, only the evaluation.
 
     Attributes:
@@ -76,20 +60,14 @@ class Truth:
 
     stamp_ns: int
     id: IntArray
-    xy_m: FloatArray
+    xy_m: Annotated[FloatArray, Column((2,))]
     hand_up: BoolArray
     in_view: BoolArray
-
-    def __post_init__(self) -> None:
-        check_rows(self, len(self.id), _TRUTH)
-
-    def __len__(self) -> int:
-        return len(self.id)
 
 
 @dataclass(frozen=True, slots=True)
 class PerceptionWork:
-    """What perception did for one image, and how long each stage took on the wall.
+    """What perception did for one image, and how long each stage took (wall-clock time).
 
     Attributes:
         places: Parts of the picture that were searched for palms.
@@ -111,7 +89,7 @@ class PerceptionWork:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameResult:
-    """Everything one processed image led to.
+    """The result of one processed image.
 
     Attributes:
         stamp_ns: The image's own stamp.

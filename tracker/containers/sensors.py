@@ -1,16 +1,24 @@
-"""What do the sensors send? One picture of the camera, one turn of the LiDAR."""
+"""What do the sensors send? Pictures of camera and depth camera, one turn of the LiDAR."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracker.containers.arrays import BoolArray, FloatArray, ImageArray, check_stamp, frozen
 from tracker.errors import ShapeError
 
 #: A turn that claims to last longer has a `time_increment` in another unit.
 _TURN_MAX_S = 1.0
+#: Meters ahead of the camera, NaN where there is no reading.
+DepthArray: TypeAlias = NDArray[np.float32]
+
+#: A reading in whole numbers counts millimeters (REP-118).
+_MILLIMETERS = 0.001
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +47,7 @@ class CameraImage:
         if len(shape) != 3 or shape[2] != 3 or 0 in shape or self.bgr.dtype != np.uint8:
             raise ShapeError(
                 f"An image has shape {shape} and type {self.bgr.dtype}; "
-                "needed are (height, width, 3) with pixels in it and uint8."
+                "expected (height, width, 3) with pixels in it and uint8."
             )
 
     @property
@@ -86,7 +94,7 @@ class Scan:
         check_stamp(self.stamp_ns)
         object.__setattr__(self, "ranges_m", frozen(self.ranges_m))
         if self.ranges_m.ndim != 1:
-            raise ShapeError(f"Scan ranges have shape {self.ranges_m.shape}; needed is (B,).")
+            raise ShapeError(f"Scan ranges have shape {self.ranges_m.shape}; expected (B,).")
         if not np.isfinite(self.angle_min_rad):
             raise ShapeError(
                 f"A scan starts at {self.angle_min_rad} rad; a finite angle is needed."
@@ -123,3 +131,57 @@ class Scan:
         """Shape (B,): direction of each beam in the laser's frame, not normalized."""
         beams = np.arange(len(self.ranges_m), dtype=np.float64)
         return self.angle_min_rad + self.angle_increment_rad * beams
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DepthImage:
+    """One picture of a depth camera.
+
+    Depth cameras send more pictures than are processed, and packed ones take longer to unpack than
+    to use; so the pixels are read only when they are needed.
+
+    Attributes:
+        stamp_ns: When it was taken.
+        frame_id: The depth camera's frame; empty means the color camera's.
+        read: Gives the pixels, shape (height, width): uint16 in millimeters, 0 for no reading, or
+            float32 in meters, not finite or not above 0 for no reading. May raise a TrackerError.
+
+    Raises:
+        ClockError: The stamp is negative.
+    """
+
+    stamp_ns: int
+    frame_id: str
+    read: Callable[[], NDArray[Any]]
+
+    def __post_init__(self) -> None:
+        check_stamp(self.stamp_ns)
+
+    @staticmethod
+    def of(stamp_ns: int, frame_id: str, pixels: NDArray[Any]) -> DepthImage:
+        """A picture whose pixels are at hand, as `read` gives them."""
+        return DepthImage(stamp_ns, frame_id, lambda: pixels)
+
+
+def depth_in_meters(pixels: NDArray[Any]) -> DepthArray:
+    """The readings of `DepthImage.read`, or of a part of them.
+
+    Args:
+        pixels: Shape (height, width), uint16 or float32.
+
+    Returns:
+        The same shape, in meters; NaN where there is no reading.
+
+    Raises:
+        ShapeError: The array is no depth picture.
+    """
+    if pixels.ndim != 2 or pixels.dtype not in (np.uint16, np.float32):
+        raise ShapeError(
+            f"A depth image has shape {pixels.shape} and type {pixels.dtype}; needed are "
+            "(height, width) and uint16 (millimeters) or float32 (meters)."
+        )
+    unit_m = np.float32(_MILLIMETERS if pixels.dtype == np.uint16 else 1.0)
+    depth_m: DepthArray = pixels.astype(np.float32) * unit_m
+    with np.errstate(invalid="ignore"):
+        depth_m[~((depth_m > 0.0) & (depth_m < np.inf))] = np.nan
+    return depth_m

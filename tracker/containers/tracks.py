@@ -3,39 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
-from tracker.containers.arrays import (
-    COUNTS,
-    FLAGS,
-    NUMBERS,
-    BoolArray,
-    FloatArray,
-    IntArray,
-    check_rows,
-    constant,
-    select,
-)
-
-_LAYOUT = {
-    "id": (COUNTS, ()),
-    "mean": (NUMBERS, (4,)),
-    "covariance": (NUMBERS, (4, 4)),
-    "existence": (NUMBERS, ()),
-    "confirmed": (FLAGS, ()),
-    "raised": (FLAGS, ()),
-    "raised_since_ns": (COUNTS, ()),
-    "age_s": (NUMBERS, ()),
-    "unseen_s": (NUMBERS, ()),
-    "hand": (COUNTS, ()),
-    "gesture": (COUNTS, ()),
-}
+from tracker.containers.arrays import BoolArray, FloatArray, IntArray
+from tracker.containers.rows import Column, Rows
 
 
 @dataclass(frozen=True, eq=False)
-class Tracks:
+class Tracks(Rows):
     """Every customer at one instant; row i of each array is the same person.
 
     Attributes:
@@ -61,8 +38,8 @@ class Tracks:
 
     stamp_ns: int
     id: IntArray
-    mean: FloatArray
-    covariance: FloatArray
+    mean: Annotated[FloatArray, Column((4,))]
+    covariance: Annotated[FloatArray, Column((4, 4))]
     existence: FloatArray
     confirmed: BoolArray
     raised: BoolArray
@@ -72,41 +49,12 @@ class Tracks:
     hand: IntArray
     selected_id: int | None = None
     refused: int = 0
-    gesture: IntArray = None  # type: ignore[assignment]  # 0 takes its place
-
-    def __post_init__(self) -> None:
-        if self.gesture is None:
-            object.__setattr__(self, "gesture", constant(0, (len(self.id),), COUNTS))
-        check_rows(self, len(self.id), _LAYOUT)
-
-    def __len__(self) -> int:
-        return len(self.id)
+    gesture: Annotated[IntArray, Column(missing=0)] = None  # type: ignore[assignment]
 
     @property
     def customer(self) -> BoolArray:
         """Shape (N,), bool: a hand has been up; others are bystanders, with identities below 0."""
         return self.id > 0
-
-    def __getitem__(self, rows: Any) -> Tracks:
-        return select(self, rows)
-
-    @staticmethod
-    def none(stamp_ns: int) -> Tracks:
-        """Nobody at all."""
-        numbers, flags, counts = np.zeros(0), np.zeros(0, np.bool_), np.zeros(0, np.int64)
-        return Tracks(
-            stamp_ns=stamp_ns,
-            id=counts,
-            mean=np.zeros((0, 4)),
-            covariance=np.zeros((0, 4, 4)),
-            existence=numbers,
-            confirmed=flags,
-            raised=flags,
-            raised_since_ns=counts,
-            age_s=numbers,
-            unseen_s=numbers,
-            hand=counts,
-        )
 
     def row_of(self, track_id: int | None) -> int | None:
         """Row of a person, or None where the tracker does not know them (any more)."""

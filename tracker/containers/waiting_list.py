@@ -103,7 +103,7 @@ class WaitingList:
         return tuple(caller for caller in self.callers if caller.state is CallState.WAITING)
 
     def to_json(self) -> str:
-        """A text that `from_json` reads, to be kept while the program is not running."""
+        """A text for `from_json`, to store the list while the program is not running."""
         callers = [
             {name: getattr(caller, name) for name in Caller.__slots__} for caller in self.callers
         ]
@@ -113,7 +113,7 @@ class WaitingList:
 
     @staticmethod
     def from_json(text: str) -> WaitingList:
-        """Read what `to_json` wrote. Nobody is in sight then: tracks of another run are no more.
+        """Read the text of `to_json`. Nobody is in sight: the tracks of that run no longer exist.
 
         Raises:
             RecordingError: The text is no such list.
@@ -125,8 +125,8 @@ class WaitingList:
             found = WaitingList(int(said["stamp_ns"]), callers, selected_id and int(selected_id))
         except (KeyError, TypeError, ValueError) as error:
             raise RecordingError(
-                f"This is no waiting list ({type(error).__name__}: {error}). Delete the file; "
-                "the list begins empty then."
+                f"This is not a waiting list ({type(error).__name__}: {error}). Delete the file; "
+                "the list then starts empty."
             ) from error
         return found
 

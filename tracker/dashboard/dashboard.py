@@ -1,4 +1,4 @@
-"""What the page knows: the newest frame, drawn only when a browser is ready for it.
+"""The state of the page: the newest frame, drawn only when a browser asks for it.
 
 The thread that processes frames leaves a reference here and goes on; it never draws, and never
 waits for a browser.
@@ -33,7 +33,7 @@ _JPEG_QUALITY = 80
 
 
 class Steering(Protocol):
-    """Who follows the page's buttons and sliders."""
+    """What executes the page's buttons and sliders."""
 
     def obey(self, command: Command) -> Answer:
         """Follow a command about the waiting list."""
@@ -112,7 +112,7 @@ class Dashboard:
         """
         steering = self.steering
         if steering is None:
-            self._said.append("this page only shows; nothing can be changed here")
+            self._said.append("this page is read-only; nothing can be changed here")
             return
         if "do" in request:
             self._orders.append(lambda: self._obey(steering, str(request["do"])))

@@ -46,7 +46,8 @@ class Health:
             lines.append(_line("laser", scans >= 0.9 * count, f"used by {scans} of {count}"))
         else:
             lines.append(_line("laser", False, "no scan is used: directions without distances"))
-        where = "its place is known" if poses == count else f"no place in {count - poses} pictures"
+        missing = f"no position in {count - poses} pictures"
+        where = "its position is known" if poses == count else missing
         lines.append(_line("transforms", poses == count, where))
         notes = {note.kind: note.text for _, result, _ in frames for note in result.notes}
         told = (NoteKind.NO_SCAN, NoteKind.NO_POSE)

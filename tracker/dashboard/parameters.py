@@ -23,7 +23,7 @@ def changed(config: Config, name: str, value: object) -> Config:
         ConfigError: There is no such parameter, it is fixed while it runs, or the value is off.
     """
     if name in Config.model_fields and not parameter_extra(name)["live"]:
-        return Config.from_mapping({f"{name} (fixed while it runs)": value}, "dashboard")
+        return Config.from_mapping({f"{name} (cannot change now)": value}, "dashboard")
     return config.replace(**{name: value})
 
 

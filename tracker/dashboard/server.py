@@ -162,7 +162,7 @@ class DashboardServer(Closing):
             await websocket.send_bytes(shown.jpeg)
 
     def _is_allowed(self, request: Any, *, needs_token: bool) -> bool:
-        """Keep out pages of other sites, and, beyond the loopback, who has no token."""
+        """Refuse pages of other sites and, except on this computer, requests without the token."""
         if self._token:
             given = request.query_params.get("token", "")
             return not needs_token or hmac.compare_digest(given.encode(), self._token.encode())

@@ -1,4 +1,4 @@
-"""The newest picture of a camera: a thread reads, and what nobody took in time is dropped."""
+"""The newest picture of a camera: a thread reads, and pictures not taken in time are dropped."""
 
 from __future__ import annotations
 
@@ -79,17 +79,17 @@ class CameraStream(Closing):
 
     def _read(self, capture: cv2.VideoCapture | None) -> None:
         if capture is None:
-            self._tell(f"camera {self._source}: cannot be opened yet; tries again")
+            self._tell(f"camera {self._source}: cannot be opened yet; trying again")
         while not self._stop.is_set():
             if capture is None:
                 self._stop.wait(_RETRY_S)
                 capture = self._open()
                 if capture is not None:
-                    self._tell(f"camera {self._source}: is there")
+                    self._tell(f"camera {self._source}: is open")
                 continue
             is_read, bgr = capture.read()
             if not is_read:
-                self._tell(f"camera {self._source}: gives no more pictures; tries again")
+                self._tell(f"camera {self._source}: sends no more pictures; trying again")
                 capture.release()
                 capture = None
                 continue

@@ -49,8 +49,8 @@ def live_events(
     is_address = "://" in source or "!" in source
     if not (is_address or source.isdecimal() or source.startswith("/dev/")):
         raise RecordingError(
-            f"{source}: there is no such file, and it is no camera; a camera is a number, a "
-            "device as /dev/video0, an address as rtsp://..., or a GStreamer pipeline."
+            f"{source}: is neither an existing file nor a camera; a camera is a number, a device "
+            "such as /dev/video0, an address such as rtsp://..., or a GStreamer pipeline."
         )
     with CameraStream(source, tell, must_be_there=not is_address) as camera:
         origin = [_origin(fixed_frame, time.time_ns())]

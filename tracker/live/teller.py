@@ -1,4 +1,4 @@
-"""What is seen, in words: one line whenever a hand goes up, or a call changes."""
+"""Prints one line whenever a hand goes up or a call changes."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ class CameraLocator:
 
 
 def shown_ns(stamp_ns: int, offset_s: float) -> int:
-    """When that happened which a sensor shows whose stamps are so late; never before 0."""
+    """The true time of sensor data whose stamps are late by an offset; never before 0."""
     return max(stamp_ns - round(offset_s * 1e9), 0)
 
 
@@ -135,7 +135,7 @@ def _time(end: tuple[int, FloatArray]) -> int:
 
 
 def mounted(target_from_camera: RigidTransform, config: Config) -> RigidTransform:
-    """The camera as it is mounted, where `camera_roll_deg` tells what its transform does not."""
+    """The camera's pose with `camera_roll_deg`, the roll that its transform omits."""
     roll_rad = float(np.radians(config.camera_roll_deg))
     if not roll_rad:
         return target_from_camera

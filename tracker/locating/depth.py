@@ -107,7 +107,7 @@ def _located(
 
 def _why_none(images: list[DepthImage], stamp_ns: int, config: Config) -> Note:
     if not images:
-        return Note(NoteKind.NO_DEPTH, "no depth image has come")
+        return Note(NoteKind.NO_DEPTH, "no depth image was received")
     off_s = (images[0].stamp_ns - stamp_ns) / 1e9
     where = f"{abs(off_s):.3f} s {'later' if off_s > 0 else 'earlier'}"
     text = f"no depth image within {config.scan_max_age_s:g} s: the nearest is {where}"

@@ -73,7 +73,7 @@ class PictureCameras:
             assumed = _assumed(self._configured, width, height)
             refused = Note(
                 NoteKind.CAMERA_INFO_REFUSED,
-                f"CameraInfo unused, the configured intrinsics serve: {error}",
+                f"CameraInfo is not used; the configured intrinsics are used: {error}",
             )
             return PictureCamera(assumed.camera, (refused, *assumed.notes))
         notes = _scaling(told, camera, "CameraInfo's intrinsics")
@@ -106,8 +106,8 @@ def _check_plausible(camera: CameraModel) -> None:
         return
     raise ConfigError(
         f"Focal lengths {camera.fx:g} and {camera.fy:g} with distortion "
-        f"{list(camera.distortion)} came for a picture of {camera.width}x{camera.height}; no "
-        "camera looks like that. Calibrate it, in pixels."
+        f"{list(camera.distortion)} came for a picture of {camera.width}x{camera.height}; this "
+        "is impossible for a camera. Calibrate it, in pixels."
     )
 
 
@@ -171,7 +171,7 @@ def _off_middle(told: CameraModel, what: str, remedy: str) -> tuple[Note, ...]:
     if told.is_centered:
         return ()
     text = (
-        f"the principal point of {what}, ({told.cx:.1f}, {told.cy:.1f}), lies far off the middle "
+        f"the principal point of {what}, ({told.cx:.1f}, {told.cy:.1f}), is far from the middle "
         f"of the picture, ({told.middle_px[0]:.1f}, {told.middle_px[1]:.1f}): the intrinsics "
         f"seem to belong to pictures of another size, and bearings may be wrong. {remedy}"
     )
@@ -179,7 +179,7 @@ def _off_middle(told: CameraModel, what: str, remedy: str) -> tuple[Note, ...]:
 
 
 _DRIVER_REMEDY = (
-    "Calibrate the camera at this size or mend the driver's CameraInfo (K, width, height, "
+    "Calibrate the camera at this size or correct the driver's CameraInfo (K, width, height, "
     "binning, roi), or set use_camera_info: false and camera_fx to camera_height."
 )
 _OWN_REMEDY = "Set camera_width and camera_height to the size that they were calibrated at."

@@ -12,7 +12,7 @@ from tracker.transforms import Transforms
 
 
 class MapLocator:
-    """Keeps the newest map, and sees it from the fixed frame."""
+    """Keeps the newest map, and transforms it into the fixed frame."""
 
     def __init__(self) -> None:
         self._frame_id = ""

@@ -53,7 +53,7 @@ def choose_scan(
     if not camera.is_located or config.fixed_frame == config.camera_frame:
         fixed_from_laser = _beside_camera(usable[0], transforms, camera, config)
         if fixed_from_laser is None:
-            text = "no mounting of the laser: it is taken to be the camera's"
+            text = "no transform of the laser: it is assumed to be at the camera"
             notes.append(Note(NoteKind.LASER_MOUNTING_UNKNOWN, text))
         return _judged(locate_scan(usable[0], fixed_from_laser or _level(camera)), config, notes)
     failures = []
@@ -95,7 +95,7 @@ def _why_none(scans: list[Scan], timely: list[Scan], stamp_ns: int, config: Conf
         text = f"the scan has {beams}; {_BEAMS_MIN} or more are needed"
         return Note(NoteKind.SCAN_WITHOUT_BEAMS, text)
     if not scans:
-        return Note(NoteKind.NO_SCAN, "no scan has come")
+        return Note(NoteKind.NO_SCAN, "no scan was received")
     off_s = (scans[0].stamp_ns - stamp_ns) / 1e9
     where = f"{abs(off_s):.3f} s {'later' if off_s > 0 else 'earlier'}"
     text = f"no scan within {config.scan_max_age_s:g} s: the nearest is {where}"

@@ -1,4 +1,4 @@
-"""What does a ROS message say? From sensor messages to the tracker's containers."""
+"""From ROS sensor messages to the tracker's containers."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def events_from_message(
     convert = _SINGLE.get(type_name)
     if convert is None:
         raise RecordingError(
-            f"Messages of type {type_name!r} say nothing here; understood are "
+            f"Messages of type {type_name!r} are not supported; supported are "
             f"{', '.join(sorted(DECODABLE))}."
         )
     return [convert(message)]
@@ -143,8 +143,8 @@ def camera_from_message(message: Any) -> CameraModel:
     is_sized = width > 0 and height > 0
     if is_sized and not (0 < wide <= width - left and 0 < high <= height - top):
         raise ConfigError(
-            f"A CameraInfo tells of a region of {wide}x{high} from column {left} and row {top} "
-            f"of a picture of {width}x{height}; it must lie within. Mend the driver's roi, or "
+            f"A CameraInfo names a region of {wide}x{high} from column {left} and row {top} "
+            f"of a picture of {width}x{height}; it must lie within. Correct the driver's roi, or "
             "set use_camera_info: false."
         )
     is_cut = is_sized and (wide, high) != (width, height)
@@ -241,7 +241,7 @@ def _camera_image(message: Any, picture: Picture) -> CameraImage:
 
 
 def _check_beams(scan: Scan, angle_max_rad: float) -> None:
-    """Angles and ranges must tell of the same turn; drivers differ by a beam at the seam."""
+    """Check that angles and ranges fit together; drivers differ by one beam."""
     came = len(scan.ranges_m)
     if not came:
         return

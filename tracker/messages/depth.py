@@ -41,7 +41,7 @@ def depth_from_image(message: Any, max_pixels: int) -> Callable[[], NDArray[Any]
     height, width = int(message.height), int(message.width)
     what = f"A {width}x{height} depth image as {message.encoding}"
     if kind is None:
-        raise RecordingError(f"{what} came; needed is 16UC1 (millimeters) or 32FC1 (meters).")
+        raise RecordingError(f"{what} was given; expected 16UC1 (millimeters) or 32FC1 (meters).")
     check_pixels(PictureSize(width, height), max_pixels, "A depth image")
     dtype = np.dtype(kind).newbyteorder(">" if message.is_bigendian else "<")
     row_bytes = width * dtype.itemsize
@@ -50,7 +50,7 @@ def depth_from_image(message: Any, max_pixels: int) -> Callable[[], NDArray[Any]
     least, most = step * (height - 1) + row_bytes, step * height
     if height < 1 or width < 1 or step < row_bytes or not least <= len(data) <= most:
         raise RecordingError(
-            f"{what} brings {len(data)} bytes in rows of {step}; needed are {max(least, 0)}, rows "
+            f"{what} brings {len(data)} bytes in rows of {step}; expected {max(least, 0)}, rows "
             f"of at least {row_bytes} bytes, and some pixels."
         )
 
@@ -73,9 +73,9 @@ def depth_from_compressed(message: Any, max_pixels: int) -> Callable[[], NDArray
             damaged.
     """
     words = message.format.lower().replace(";", " ").split()
-    what = f"A packed depth image of format {message.format!r}"
+    what = f"A compressed depth image of format {message.format!r}"
     if "rvl" in words:
-        raise RecordingError(f"{what} came; set the publisher's `format` to png.")
+        raise RecordingError(f"{what} is not supported; set the publisher's `format` to png.")
     data = as_bytes(message.data)
     begin = 0 if data[: len(_PNG)].tobytes() == _PNG else _SETTINGS.size
     size = picture_size(data[begin:])
@@ -85,7 +85,7 @@ def depth_from_compressed(message: Any, max_pixels: int) -> Callable[[], NDArray
     if "32fc1" not in words:
         return partial(_unpacked, data[begin:], what)
     if not begin:
-        raise RecordingError(f"{what} comes without the 12 bytes that tell how it is quantized.")
+        raise RecordingError(f"{what} lacks the 12 bytes that say how it is quantized.")
     _, gain, offset = _SETTINGS.unpack_from(data.tobytes()[: _SETTINGS.size])
     return lambda: _from_inverse(_unpacked(data[begin:], what), gain, offset)
 
@@ -129,10 +129,10 @@ def _unpacked(png: NDArray[np.uint8], what: str) -> NDArray[Any]:
     try:
         numbers = cv2.imdecode(png, cv2.IMREAD_UNCHANGED)
     except cv2.error as error:
-        raise RecordingError(f"{what} cannot be unpacked ({error.err}).") from error
+        raise RecordingError(f"{what} cannot be decompressed ({error.err}).") from error
     if numbers is None or numbers.ndim != 2 or numbers.dtype != np.uint16:
         raise RecordingError(
-            f"{what} cannot be unpacked; needed is a PNG of 16 bits, one channel."
+            f"{what} cannot be decompressed; expected a PNG of 16 bits, one channel."
         )
     return np.asarray(numbers)
 

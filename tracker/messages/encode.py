@@ -1,4 +1,4 @@
-"""How is it said in ROS? From the tracker's containers to serialized messages."""
+"""From the tracker's containers to serialized ROS messages."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def _message(item: Encodable, frame_id: str, jpeg_quality: int | None) -> Any:
         case list() | tuple() if all(isinstance(part, StampedTransform) for part in item):
             return _transforms(item)
     raise RecordingError(
-        f"There is no ROS message for {type(item).__name__}; `encode` lists what there is."
+        f"There is no ROS message for {type(item).__name__}; `encode` lists the supported ones."
     )
 
 
@@ -139,7 +139,7 @@ def _image(image: CameraImage) -> Any:
 
 def _compressed(image: CameraImage, quality: int) -> Any:
     if not 1 <= quality <= 100:
-        raise RecordingError(f"A JPEG quality of {quality} came; needed is one from 1 to 100.")
+        raise RecordingError(f"A JPEG quality of {quality} was given; expected one from 1 to 100.")
     _, data = cv2.imencode(".jpg", image.bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])
     return build(
         types.COMPRESSED_IMAGE,

@@ -32,15 +32,19 @@ def peek_header(cdr: bytes | memoryview) -> Header:
         RecordingError: The bytes end too early, or the stamp or the frame's name is none.
     """
     if len(cdr) < _NAME_AT or cdr[0] != 0 or cdr[1] not in (0, 1):
-        raise RecordingError(f"{len(cdr)} bytes came; they do not begin as a CDR message does.")
+        raise RecordingError(
+            f"{len(cdr)} bytes were received that do not begin like a CDR message."
+        )
     order = "<" if cdr[1] else ">"
     sec, nanosec, length = struct.unpack_from(f"{order}iII", cdr, _STAMP_AT)
     if sec < 0 or nanosec >= 1_000_000_000:
         raise RecordingError(f"A stamp of {sec} s and {nanosec} ns came; it is none.")
     name = bytes(cdr[_NAME_AT : _NAME_AT + length]) if length <= _LONGEST_NAME else b""
     if len(name) < length or length == 0 or name[-1] != 0:
-        raise RecordingError(f"A frame_id of {length} bytes came; the message does not hold it.")
+        raise RecordingError(
+            f"The frame_id should have {length} bytes, but the message is shorter."
+        )
     try:
         return Header(sec * 1_000_000_000 + nanosec, name[:-1].decode())
     except UnicodeDecodeError as error:
-        raise RecordingError(f"A frame_id is no UTF-8 text ({error.reason}).") from error
+        raise RecordingError(f"The frame_id is not UTF-8 text ({error.reason}).") from error

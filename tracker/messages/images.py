@@ -59,7 +59,8 @@ def picture_from_image(message: Any, max_pixels: int = MAX_PIXELS) -> Picture:
     what = f"A {message.width}x{message.height} image as {message.encoding}"
     if encoding is None:
         raise RecordingError(
-            f"An image has the encoding {message.encoding!r}; known are {', '.join(ENCODINGS)}."
+            f"An image has the encoding {message.encoding!r}; supported are "
+            f"{', '.join(ENCODINGS)}."
         )
     if isinstance(encoding, File):
         return picture_from_file(as_bytes(message.data), what, max_pixels)
@@ -88,7 +89,7 @@ def picture_from_compressed(message: Any, max_pixels: int = MAX_PIXELS) -> Pictu
     kind = next((_NO_PICTURES[word] for word in words if word in _NO_PICTURES), None)
     if kind is not None:
         raise RecordingError(
-            f"{what} is {kind}; needed are pictures of light, each by itself, as jpeg or png."
+            f"{what} is {kind}; expected pictures of light, each by itself, as jpeg or png."
         )
     return picture_from_file(as_bytes(message.data), what, max_pixels)
 
@@ -110,13 +111,13 @@ def picture_from_file(data: NDArray[np.uint8], what: str, max_pixels: int = MAX_
     size = picture_size(data)
     if size is None:
         raise RecordingError(
-            f"{what} cannot be decoded; needed is a JPEG, PNG, WebP, BMP or TIFF with its header."
+            f"{what} cannot be decoded; expected a JPEG, PNG, WebP, BMP or TIFF with its header."
         )
     check_pixels(size, max_pixels, what)
     flags = cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH
     numbers = _with_opencv(lambda: cv2.imdecode(data, flags), what)
     if numbers.dtype not in (np.uint8, np.uint16):
-        raise RecordingError(f"{what} holds numbers of type {numbers.dtype}; it is no picture.")
+        raise RecordingError(f"{what} holds numbers of type {numbers.dtype}; it is not a picture.")
     return Picture(*_eight_bits(numbers, 8 if numbers.dtype == np.uint8 else None, what))
 
 
@@ -126,7 +127,7 @@ def _with_opencv(convert: Callable[[], Any], what: str) -> ImageArray:
     except cv2.error as error:
         raise RecordingError(f"{what} cannot be decoded ({error.err}).") from error
     if picture is None:
-        raise RecordingError(f"{what} cannot be decoded; is it cut off or of another kind?")
+        raise RecordingError(f"{what} cannot be decoded; is it cut off, or not a picture?")
     return cast(ImageArray, picture)
 
 
@@ -222,7 +223,7 @@ def _plane_shapes(
 def _misfit(message: Any, least: int, row_bytes: int) -> RecordingError:
     return RecordingError(
         f"An image says {message.width}x{message.height} {message.encoding} in rows of "
-        f"{message.step} bytes and brings {len(message.data)} bytes; needed are "
+        f"{message.step} bytes and brings {len(message.data)} bytes; expected "
         f"{max(least, 0)}, rows of at least {row_bytes} bytes, and some pixels."
     )
 

@@ -63,7 +63,7 @@ def check_pixels(size: PictureSize, max_pixels: int, what: str) -> None:
     """
     if size.width * size.height > max_pixels:
         raise RecordingError(
-            f"{what} says that it has {size.width}x{size.height} pixels; at most {max_pixels} "
+            f"{what} claims to have {size.width}x{size.height} pixels; at most {max_pixels} "
             "are decoded. Send smaller pictures, or raise picture_max_pixels."
         )
 

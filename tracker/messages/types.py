@@ -100,7 +100,7 @@ def deserialize(type_name: str, cdr: bytes | memoryview) -> Any:
         return typestore().deserialize_cdr(cdr, type_name)
     except MALFORMED as error:
         raise RecordingError(
-            f"{len(cdr)} bytes came as {type_name}; they do not hold one ({error})."
+            f"{len(cdr)} bytes were received as {type_name}, but are not such a message ({error})."
         ) from error
 
 

@@ -1,4 +1,4 @@
-"""How is the waiting list said in ROS? Number, state, since when, pose and approach together."""
+"""The waiting list as a ROS message: number, state, since when, pose and approach pose."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def writing_into(folder: str | Path) -> Iterator[Callable[[str], Path]]:
 
 
 class GrowingFile:
-    """Where a file grows that is of use before it is whole, as after a kill.
+    """A file that is useful before it is complete, for example after a kill.
 
     Under its own name where nothing stands there; else beside the earlier file, until `finish`.
 
@@ -93,7 +93,7 @@ class GrowingOutput(Closing):
 
     @abstractmethod
     def break_off(self) -> None:
-        """Nothing more comes; what was written can be read and takes no earlier file's place."""
+        """Stop writing; the part that was written stays readable and replaces no earlier file."""
 
     def __exit__(self, *raised: object) -> None:
         if raised[0] is None:

@@ -22,7 +22,7 @@ else:
 
 
 class FolderLock(Closing):
-    """Keeps a folder for its process; however that ends, the system lets the folder go.
+    """Locks a folder for this process; the system unlocks it when the process ends.
 
     The file `.lock` stays: were it taken away, two could hold one each.
 
@@ -40,7 +40,7 @@ class FolderLock(Closing):
             path = folder / ".lock"
             if path.exists() and not path.is_file():
                 raise ConfigError(
-                    f"{path}: is no file; it would hold the folder's lock. Remove it."
+                    f"{path}: is not a file, but the folder's lock file must be there. Remove it."
                 )
             self._file = path.open("ab")
         except OSError as error:
@@ -50,8 +50,8 @@ class FolderLock(Closing):
         except (BlockingIOError, PermissionError) as error:
             self.close()
             raise ConfigError(
-                f"{folder}: another command writes there at this moment; wait for its end, or "
-                "name another folder."
+                f"{folder}: another command is writing there; wait until it ends, or choose "
+                "another folder."
             ) from error
         except OSError:  # a disk that knows no locks: then nobody is kept out
             pass

@@ -1,4 +1,4 @@
-"""Would an output take the place of an input? Asked before anything is opened."""
+"""Would an output replace an input? Checked before any file is opened."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def check_inputs_stay(inputs: Iterable[Path | None], outputs: Iterable[Path | No
         for source in read:
             if any(_takes(name, source) for name in (output, part_of(output))):
                 raise ConfigError(
-                    f"{output}: would be written over {source}, which is read, or into it; "
-                    "name another place for what is written."
+                    f"{output}: this output would replace the input {source}, or lie inside it; "
+                    "choose another output."
                 )
         for other in written[:number]:
             if any(
@@ -39,7 +39,8 @@ def check_inputs_stay(inputs: Iterable[Path | None], outputs: Iterable[Path | No
                 for two in (other, part_of(other))
             ):
                 raise ConfigError(
-                    f"{output}: two outputs would be written there; name another place for one."
+                    f"{output}: two outputs would be written there; choose another place for one "
+                    "of them."
                 )
 
 

@@ -1,4 +1,4 @@
-"""What does one tell whose file cannot be written? The cause, and what helps against that one."""
+"""The error for a file that cannot be written: the cause, and what helps."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
 def unwritable(path: str | Path, error: OSError) -> OutputError:
     """The error for a file or folder that the system does not let us write."""
     if error.errno in _FULL:
-        remedy = "make room on the disk, or name a place that has some"
+        remedy = "free some space on the disk, or choose another place"
     elif error.errno in _FORBIDDEN:
-        remedy = "name a place where you may write"
+        remedy = "choose a place where you may write"
     else:
-        remedy = "a folder that exists, may be written and has room is needed"
+        remedy = "choose an existing, writable folder with free space"
     return OutputError(f"{path}: cannot be written ({error.strerror or error}); {remedy}.")

@@ -11,9 +11,10 @@ from typing import Any
 
 #: Their names, and why they went.
 RETIRED = {
-    "appearance_weight": "the colors of clothes saved false raises and cost false customers",
-    "hand_bias_duration_s": "what lasts of an error is part of the published covariance",
-    "measurement_model": "bearing and range are always compared where they were taken (polar)",
+    "appearance_weight": "comparing the colors of clothes avoided false raises but caused false "
+                         "customers",
+    "hand_bias_duration_s": "lasting errors are part of the published covariance",
+    "measurement_model": "measurements are always compared as bearing and range (polar)",
     **dict.fromkeys(
         (
             "palm_lowered_threshold", "small_hand_patience_s", "raised_score_min",
@@ -21,7 +22,7 @@ RETIRED = {
             "hand_head_clearance", "owner_hand_px", "unowned_patience_s",
             "hand_shoulder_rise_min",
         ),
-        "the verdict weighs evidence (`raise_rule`)",
+        "the rule `evidence` decides instead (`raise_rule`)",
     ),
 }  # fmt: skip
 #: Those that the last version had: programs may still name them in this one, and are warned.
@@ -44,7 +45,7 @@ def without_retired(
     gone = [f"`{name}` ({why})" for name, why in RETIRED.items() if name in named]
     if gone:
         remark(
-            f"{origin}: parameters of an earlier version are left out and may be deleted: "
+            f"{origin}: parameters of an earlier version are ignored and may be deleted: "
             + "; ".join(gone)
         )
     return {name: value for name, value in values.items() if _parameter(name) not in RETIRED}
@@ -54,7 +55,7 @@ def without_lately_retired(values: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters as this version knows them, with a `FutureWarning` for each that is changed."""
     kept = {name: value for name, value in values.items() if name not in LATELY_RETIRED}
     for name in sorted(values.keys() - kept.keys()):
-        _warn(f"{name} decides nothing any more: {RETIRED[name]}")
+        _warn(f"{name} has no effect any more: {RETIRED[name]}")
     for name, others in _RENAMED.items():
         if isinstance(kept.get(name), str) and kept[name] in others:
             _warn(f"{name}: {kept[name]} is now called {others[kept[name]]}")

@@ -46,7 +46,7 @@ def read_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     """
     document = read_yaml(path)
     if not isinstance(document, dict):
-        raise ConfigError(f"{path}: holds no parameters; `{NODE_NAME}: {SECTION}:` is needed.")
+        raise ConfigError(f"{path}: contains no parameters; expected `{NODE_NAME}: {SECTION}:`.")
     sections = list(_sections(document))
     names = [name for name, _ in sections]
     # As in rcl, all that a file gives under one name applies where that name stands first.
@@ -55,11 +55,11 @@ def read_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     fitting = [section for section in sections if _fits(section[0], node)]
     if not fitting:
         needed = f"{node}:` or `/**/{NODE_NAME}" if node else NODE_NAME
-        raise ConfigError(f"{path}: names the nodes {', '.join(names)}; needed is `{needed}:`.")
+        raise ConfigError(f"{path}: names the nodes {', '.join(names)}; expected `{needed}:`.")
     found: dict[str, Any] = {}
     for name, parameters in fitting:
         if not isinstance(parameters, dict):
-            raise ConfigError(f"{path}: `{name}:` has no `{SECTION}:` with parameters below.")
+            raise ConfigError(f"{path}: `{name}:` has no `{SECTION}:` with parameters below it.")
         found |= _flat(parameters)
     return found
 
@@ -77,7 +77,7 @@ def read_assignment(text: str, node: str | None = None) -> tuple[str, Any]:
     name, separator, value = text.partition(":=")
     prefix, has_prefix, rest = name.rpartition(":")
     if not separator or not rest or not value or (has_prefix and not prefix):
-        raise ConfigError(f"-p is {shown(text)}; needed is NAME:=VALUE.")
+        raise ConfigError(f"-p is {shown(text)}; expected NAME:=VALUE.")
     if has_prefix and not _fits(_full(prefix), node):
         raise ConfigError(
             f"-p is {shown(text)}, for the node {_full(prefix)}; this one is {node or NODE_NAME}."
@@ -107,8 +107,8 @@ def _only_node(names: list[str], path: Path) -> str | None:
         return f"/{NODE_NAME}"
     if len(ours) > 1:
         raise ConfigError(
-            f"{path}: has parameters for {' and '.join(ours)}, and only one of them can be meant; "
-            "make a file for each."
+            f"{path}: has parameters for {' and '.join(ours)}, but only one can be used; make a "
+            "file for each."
         )
     return ours[0] if ours else None
 

@@ -51,13 +51,13 @@ def read_yaml(path: Path) -> Any:
         raise ConfigError(f"{path}: cannot be read ({reason}).") from error
     if len(content) > MAX_BYTES:
         raise ConfigError(
-            f"{path}: is larger than {MAX_BYTES / 1e6:g} MB, which no such file needs; "
-            "is it another one that you mean?"
+            f"{path}: is larger than {MAX_BYTES / 1e6:g} MB, too large for such a file; is it "
+            "the wrong file?"
         )
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ConfigError(f"{path}: is no UTF-8 text; a YAML file is needed.") from error
+        raise ConfigError(f"{path}: is not UTF-8 text; expected a YAML file.") from error
     return parse_yaml(text, str(path))
 
 
@@ -83,7 +83,7 @@ def parse_yaml(text: str, origin: str) -> Any:
         mark = getattr(error, "problem_mark", None)
         where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         what = getattr(error, "problem", None) or "syntax error"
-        raise ConfigError(f"{origin}: is no YAML{where}: {what}.") from error
+        raise ConfigError(f"{origin}: is not YAML{where}: {what}.") from error
 
 
 def scalar(text: str) -> Any:
@@ -141,7 +141,7 @@ class _Reader:
             parent.value.append(value)
         elif parent.key is None:
             if not isinstance(value, str):
-                raise self.error("has a key that is no text")
+                raise self.error("has a key that is not text")
             parent.key = value
         else:
             self.put(parent.value, parent.key, value)
@@ -187,7 +187,7 @@ def _document(events: Iterable[yaml.Event], origin: str) -> Any:
             reader.take(event.value if is_text else scalar(event.value), 1, event.anchor)
         elif isinstance(event, yaml.AliasEvent):
             if event.anchor not in reader.anchors:
-                raise reader.error(f"names `*{event.anchor}`, which stands for nothing")
+                raise reader.error(f"names `*{event.anchor}`, which is not defined")
             reader.take(*reader.anchors[event.anchor], None)
     return reader.document
 

@@ -12,7 +12,7 @@ __all__ = ["HandDetector", "HandFinder", "open_detector"]
 
 
 def __getattr__(name: str) -> Any:
-    """These bring OpenCV and ONNX Runtime along; other detectors need neither."""
+    """These import OpenCV and ONNX Runtime; other detectors need neither."""
     if name == "HandFinder":
         from tracker.perception.hands.hand_finder import HandFinder
 

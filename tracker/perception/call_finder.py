@@ -1,4 +1,4 @@
-"""Which hands call? Hands, their owners and all that was seen of both, weighed as evidence."""
+"""Which hands call? The evidence of hands and of their owners is weighed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from tracker.containers import (
     CameraImage,
     FloatArray,
     Hands,
-    ImageArray,
     PerceptionWork,
     Refusal,
 )
@@ -24,6 +23,7 @@ from tracker.perception.bodies.owners import (
     sure_owners,
 )
 from tracker.perception.bodies.people_watch import LOOK_PLACES, PeopleWatch
+from tracker.perception.detector import NO_HINTS, Hints
 from tracker.perception.hands.gray import tint_gray
 from tracker.perception.hands.hand_finder import HandFinder
 from tracker.perception.pictures import continues
@@ -74,30 +74,16 @@ class CallFinder:
         self._config = config
         self._memory = HandMemory()
         self._prior = PlacePrior()
-        self._is_pressed = False
+        self._told = NO_HINTS  # for the next image, by what this one shows
         self._last: CameraImage | None = None
         self.weighed: Weighed | None = None
 
     @property
     def work(self) -> PerceptionWork:
-        """What the hands of the last image cost; the bodies are not counted."""
+        """Cost of the last image's hands, without bodies."""
         return replace(self._hands.work, place_bar=self._prior.highest)
 
-    @property
-    def seen(self) -> ImageArray | None:
-        """The last image as the hands' models saw it."""
-        return self._hands.seen
-
-    def expect(self, boxes_px: FloatArray) -> None:
-        """Where raised hands are likelier."""
-        self._hands.expect(boxes_px)
-
-    def set_budget(self, runs: int | None) -> None:
-        """How many model runs the hands of an image may take; arms are not watched then."""
-        self._is_pressed = runs is not None
-        self._hands.set_budget(runs)
-
-    def find(self, image: CameraImage) -> Hands:
+    def find(self, image: CameraImage, hints: Hints = NO_HINTS) -> Hands:
         """Every hand of the image, in pixels of the full image.
 
         After those that were found comes a schematic hand for each arm that is up and has none.
@@ -105,13 +91,16 @@ class CallFinder:
         if self._last is not None and not continues(self._last, image):
             self._memory.reset()
         self._last = image
-        hands = self._hands.find(image)
-        bodies = self._look_around(image, hands)
+        told, self._told = self._told, NO_HINTS
+        told = replace(hints, suggested_px=told.suggested_px, spared=told.spared)
+        hands = self._hands.find(image, told)
+        bodies = self._look_around(image, hands, is_pressed=hints.model_runs is not None)
         arms = bodies.arms_up & arms_without_hand(hands, bodies)
         arms &= (bodies.age_s <= _ARM_MAX_AGE_S)[:, None]
         person = np.nonzero(arms)[0]
         drawn = draw_hands(bodies, arms, (image.width, image.height), self._config)
-        self._hands.suggest(drawn.landmarks_px[bodies.age_s[person] == 0.0])
+        seen_now = bodies.age_s[person] == 0.0
+        self._told = replace(self._told, suggested_px=drawn.landmarks_px[seen_now])
         asked = np.zeros(len(hands), dtype=bool)
         if self._watch is not None:
             asked = self._watch.is_asked(hands)
@@ -123,18 +112,18 @@ class CallFinder:
         )
         return self._weigh(image.stamp_ns, Hands.concatenate(hands, drawn), bodies, seen)
 
-    def _look_around(self, image: CameraImage, hands: Hands) -> Bodies:
-        """Who is there."""
+    def _look_around(self, image: CameraImage, hands: Hands, is_pressed: bool) -> Bodies:
+        """Who is there; arms are not watched while model runs are counted."""
         if self._watch is None:
             return Bodies.none()
         nothing = np.zeros(len(hands))
         alone = Seen(nothing == 0.0, np.full(len(hands), -1), nothing > 0.0, nothing)
         may_call = log_odds(gather_evidence(hands, Bodies.none(), alone)) > _MAY_CALL
-        seen = image.bgr if self.seen is None else self.seen
+        seen = image.bgr if self._hands.seen is None else self._hands.seen
         picture = replace(image, bgr=tint_gray(seen))
-        bodies = self._watch.find(picture, hands, may_call, rests=self._is_pressed)
-        if self._watch.looks_next and not self._is_pressed:
-            self._hands.spare(LOOK_PLACES)
+        bodies = self._watch.find(picture, hands, may_call, rests=is_pressed)
+        if self._watch.looks_next and not is_pressed:
+            self._told = replace(self._told, spared=LOOK_PLACES)
         return bodies
 
     def _weigh(self, stamp_ns: int, hands: Hands, bodies: Bodies, seen: Seen) -> Hands:
@@ -187,7 +176,7 @@ class CallFinder:
 
     def reset(self) -> None:
         """Forget earlier images."""
-        self._last = None
+        self._last, self._told = None, NO_HINTS
         self._hands.reset()
         self._memory.reset()
         self._prior.reset()

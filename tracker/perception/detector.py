@@ -1,11 +1,35 @@
-"""What must a hand detector be able to do? The one interface behind which any model can stand."""
+"""The interface that every hand detector implements."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
+import numpy as np
+
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands, ImageArray, PerceptionWork
+from tracker.containers import CameraImage, FloatArray, Hands, PerceptionWork
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hints:
+    """What may help with one image; a detector may leave any of it aside.
+
+    Attributes:
+        expected_px: Shape (E, 4): boxes in which raised hands are likelier, in pixels.
+        model_runs: How many model runs the image may take; None is as configured.
+        suggested_px: Shape (G, 21, 2): landmarks of hands that may be there, to be looked at
+            without a search.
+        spared: So many places less are searched, down to one.
+    """
+
+    expected_px: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
+    model_runs: int | None = None
+    suggested_px: FloatArray = field(default_factory=lambda: np.zeros((0, 21, 2)))
+    spared: int = 0
+
+
+NO_HINTS = Hints()
 
 
 @runtime_checkable
@@ -16,8 +40,13 @@ class HandDetector(Protocol):
     MediaPipe's order; `raise_rules.judge_raised` gives the verdict on them.
     """
 
-    def find(self, image: CameraImage) -> Hands:
+    def find(self, image: CameraImage, hints: Hints = NO_HINTS) -> Hands:
         """Every hand of the image, in pixels of the full image."""
+        ...
+
+    @property
+    def work(self) -> PerceptionWork | None:
+        """What the last image cost; None where nobody counts."""
         ...
 
     def reset(self) -> None:
@@ -26,30 +55,4 @@ class HandDetector(Protocol):
 
     def configure(self, config: Config) -> None:
         """Take over changed parameters, from the next image on."""
-        ...
-
-
-@runtime_checkable
-class PiecewiseDetector(HandDetector, Protocol):
-    """A detector that searches the picture piece by piece: it can be told where, and how much."""
-
-    @property
-    def work(self) -> PerceptionWork:
-        """What the last image cost."""
-        ...
-
-    @property
-    def seen(self) -> ImageArray | None:
-        """The last image as the models saw it, shape (height, width, 3); None before the first.
-
-        Dark and noisy pictures are cleared; other models may look at what came of it.
-        """
-        ...
-
-    def expect(self, boxes_px: FloatArray) -> None:
-        """Where raised hands are likelier in the next image: boxes of shape (E, 4), in pixels."""
-        ...
-
-    def set_budget(self, runs: int | None) -> None:
-        """How many model runs an image may take from now on; None is as configured."""
         ...

@@ -9,6 +9,7 @@ from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, Refusa
 from tracker.perception.bodies.bodies import ELBOWS, SHOULDERS, WRISTS, Bodies, one_row_each
 from tracker.perception.bodies.body_look import BodyLook
 from tracker.perception.bodies.owners import head_distance_px
+from tracker.perception.detector import NO_HINTS, Hints
 from tracker.perception.pictures import continues
 from tracker.perception.verdict.raise_rules import judge_raised
 
@@ -40,6 +41,8 @@ class PoseHands:
         config: The pose group.
     """
 
+    work = None
+
     def __init__(self, look: BodyLook, config: Config) -> None:
         self._look = look
         self._config = config
@@ -51,7 +54,7 @@ class PoseHands:
         self._known = Bodies.none()
         self._looks = 0
 
-    def find(self, image: CameraImage) -> Hands:
+    def find(self, image: CameraImage, hints: Hints = NO_HINTS) -> Hands:
         """Hands at the wrists seen in this very image, in pixels of the full image.
 
         A stamp that jumps back, another frame_id or another size of the image starts anew.

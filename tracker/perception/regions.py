@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray
-from tracker.perception.rows import Rows
+from tracker.containers.rows import Column, Rows
 
 #: How much of the hand's own size a region takes in, and how far its center moves towards the
 #: fingers, in sizes. The landmark model was trained on regions of exactly these shapes (Zhang et
@@ -27,7 +28,7 @@ STEADY_LANDMARKS = (0, 1, 2, 3, 5, 6, 9, 10, 13, 14, 17, 18)
 PALM_WRIST, PALM_MIDDLE_ROOT = 0, 2
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Regions(Rows):
     """Rotated squares in the full image; row i of each array is one region.
 
@@ -37,14 +38,9 @@ class Regions(Rows):
         rotation_rad: Shape (R,): 0 where the fingers point up, positive clockwise on the screen.
     """
 
-    center_px: FloatArray
+    center_px: Annotated[FloatArray, Column((2,))]
     side_px: FloatArray
     rotation_rad: FloatArray
-
-    @staticmethod
-    def none() -> Regions:
-        """No region at all."""
-        return Regions(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
 
 
 def regions_from_palms(boxes_px: FloatArray, keypoints_px: FloatArray) -> Regions:

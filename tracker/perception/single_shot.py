@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import cv2
 import numpy as np
 import onnxruntime
 
 from tracker.containers import FloatArray, ImageArray
+from tracker.containers.rows import Column, Rows
 from tracker.perception.pictures import Window, cut_out, shrink_picture
 from tracker.perception.regions import box_overlap
-from tracker.perception.rows import Rows
 
 #: (stride in pixels, anchors per cell) of each output map of the palm model, in the order of its
 #: rows. The last three maps share stride 16 with two anchors each: six a cell.
@@ -22,7 +23,7 @@ POSE_LAYERS = ((8, 2), (16, 2), (32, 6))
 SAME_OVERLAP = 0.3
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Detections(Rows):
     """What was found in one picture, the surest first; row i of each array is the same thing.
 
@@ -34,8 +35,8 @@ class Detections(Rows):
         score: Shape (D,): in [0, 1].
     """
 
-    boxes_px: FloatArray
-    keypoints_px: FloatArray
+    boxes_px: Annotated[FloatArray, Column((4,))]
+    keypoints_px: Annotated[FloatArray, Column((-1, 2))]
     score: FloatArray
 
     @staticmethod

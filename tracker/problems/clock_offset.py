@@ -1,4 +1,4 @@
-"""Does a sensor stamp its messages later than they come? Then its clock is another one."""
+"""Are the stamps of a sensor later than the arrival of its messages? Then its clock is wrong."""
 
 from __future__ import annotations
 

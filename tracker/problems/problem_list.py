@@ -35,7 +35,7 @@ class Problems:
         self._faults.add(kind, text)
 
     def remark(self, text: str, kind: str | None = None) -> None:
-        """Note what is no fault; by default each text is a kind of its own."""
+        """Note a remark; by default each text is a kind of its own."""
         self._remarks.add(kind or text, text)
 
     def note_arrival(self, event: object, arrived_ns: int) -> None:
@@ -70,7 +70,7 @@ class Problems:
             return
         text = (
             f"{self._first_unlocated.rstrip('.')} (so in {self._unlocated} of "
-            f"{counted(self._frames, 'image')}: no pose there, and no place in the fixed frame)"
+            f"{counted(self._frames, 'image')}: no pose there, and no position in the fixed frame)"
         )
         if self._unlocated > _LOST_SHARE * self._frames:
             self.add("missing transforms", text)
@@ -83,7 +83,7 @@ class Problems:
         return self._image_clock.ahead_s() - self._transform_clock.ahead_s()
 
     def note_scan_use(self, max_age_s: float) -> None:
-        """Say whether the scans that came were of any use.
+        """Report scans that could not be used.
 
         Args:
             max_age_s: `scan_max_age_s`: stamps that are farther off make a scan useless.
@@ -109,7 +109,7 @@ class Problems:
             )
 
     def note_depth_use(self) -> None:
-        """Say whether the depth images that came were of any use."""
+        """Report depth images that could not be used."""
         use = self._depth_use
         if use.frames and use.used <= _NEVER_SHARE * use.frames:
             images = counted(use.frames, "image")

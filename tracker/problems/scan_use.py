@@ -1,4 +1,4 @@
-"""Is the LiDAR of any use? A sensor of which nothing is used must not go unnoticed."""
+"""How often is a sensor used? A sensor whose data are never used must be reported."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class ScanUse:
     """Counts the images for which a scan was used, and why not for the others.
 
     Args:
-        leaves_unused: Which kinds of notes say why not; by default those about scans.
+        leaves_unused: Which kinds of notes are such a reason; by default those about scans.
 
     Attributes:
         frames: Images since the beginning, or since `reset`.
-        used: Those of them for which it showed something.
+        used: Images for which the sensor was used.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class ScanUse:
         self._first: dict[NoteKind, str] = {}
 
     def add(self, result: FrameResult) -> None:
-        """Take in what one image led to."""
+        """Count the result of one image."""
         self.frames += 1
         reasons = [note for note in result.notes if self._leaves_unused(note.kind)]
         self.used += not reasons

@@ -1,4 +1,4 @@
-"""Between which bearings does a camera see raised hands? By its whole attitude, rolled or not."""
+"""Between which bearings does a camera see raised hands? Roll, pitch and yaw are used."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _RIM, _WITHIN_RIM = 64, 0.999
 def bearing_span_rad(
     camera: CameraModel, image_size: tuple[int, int], fixed_from_camera: RigidTransform
 ) -> tuple[float, float]:
-    """Bearings of what is farthest to the right and to the left among the places of raised hands.
+    """Bearings of the rightmost and the leftmost place where a raised hand can be.
 
     Args:
         camera: Intrinsics of the full image.

@@ -1,11 +1,11 @@
-"""What lasts of a place's error? Legs beside the torso, a hand beside the body, yaw and stamps.
+"""Which errors of a position last? Legs beside the torso, hand beside the body, yaw, stamps.
 
-Sensors that move with velocity v and turn rate w, and whose stamps are late by t, show a place at
-d from them as if it were shifted by t u, with
+Sensors that move with velocity v and turn rate w, and whose stamps are late by t, measure a place
+at the offset d from them with an error of t u, with
 
     u = v + w (-d_y, d_x).
 
-How people walk meanwhile is left out: at 1 m/s and 20 ms that is 2 cm.
+The motion of people in that time is neglected: at 1 m/s and 20 ms it is 2 cm.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def bias_covariance(
     across_m: FloatArray | float,
     motion: FloatArray,
 ) -> FloatArray:
-    """Covariance of what all measurements of a person have in common, in the fixed frame.
+    """Covariance of the error that all measurements of a person share, in the fixed frame.
 
     Args:
         heading_rad: Shape (M,): of the lines of sight, in the fixed frame.

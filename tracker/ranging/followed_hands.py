@@ -1,4 +1,4 @@
-"""Which hand of this image is which of the last one? What many images tell better than one.
+"""Which hand of this image is which of the last one? Evidence is added up over images.
 
 How long a palm looks, and where its thumb points, is uncertain by the noise of a few pixels, which
 is new in each image: means over a second tell more. Any detector will do; hands are recognized by
@@ -8,12 +8,12 @@ their direction and size.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from tracker.containers import FloatArray, IntArray
+from tracker.containers.rows import Rows
 from tracker.geometry import normalize_angle
 
 #: Means forget with this time constant: somebody who walks is a meter nearer after a second.
@@ -26,8 +26,8 @@ _TURN_RAD, _TURN_RAD_PER_S = 0.1, 0.5
 _GROWTH = 1.6
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class HandMeans:
+@dataclass(frozen=True, eq=False)
+class HandMeans(Rows):
     """What is known of hands; row i of each array is the same hand.
 
     Attributes:
@@ -45,25 +45,6 @@ class HandMeans:
     breadth_px2: FloatArray
     side: FloatArray
     images: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.images)
-
-    def __getitem__(self, rows: Any) -> HandMeans:
-        return HandMeans(*(getattr(self, item.name)[rows] for item in fields(self)))
-
-    def append(self, other: HandMeans) -> HandMeans:
-        """These, then those."""
-        names = [item.name for item in fields(self)]
-        return HandMeans(
-            *(np.concatenate([getattr(self, name), getattr(other, name)]) for name in names)
-        )
-
-    @staticmethod
-    def none() -> HandMeans:
-        """No hand."""
-        real = np.zeros(0)
-        return HandMeans(real, np.zeros(0, dtype=np.int64), real, real, real, real)
 
 
 class FollowedHands:
@@ -100,7 +81,9 @@ class FollowedHands:
         for name, mean in means.items():
             columns[name][row] = mean
         result = HandMeans(**columns)
-        self._known = result.append(known[np.setdiff1d(np.arange(len(known)), was)])
+        self._known = HandMeans.concatenate(
+            result, known[np.setdiff1d(np.arange(len(known)), was)]
+        )
         return result
 
 

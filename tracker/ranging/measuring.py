@@ -1,4 +1,4 @@
-"""What do hands and scan together claim about people? Measurements with honest covariance."""
+"""Hands and scan to measurements of people, with their covariance."""
 
 from __future__ import annotations
 
@@ -253,7 +253,7 @@ def _body_measurements(
 
 
 def _pose_covariance(motion: FloatArray, config: Config) -> FloatArray | None:
-    """Shape (3, 3): how wrong stamps move the sensors; the same for both, which go together."""
+    """Shape (3, 3): pose error by wrong stamps; the same for both sensors, which move together."""
     moved = config.stamp_std_s * motion
     return np.outer(moved, moved) if moved.any() else None
 
@@ -265,7 +265,7 @@ def is_told_by_size(measurements: Measurements) -> BoolArray:
 
 
 def body_bearing_std_rad(range_m: FloatArray, std_m: FloatArray | float) -> FloatArray:
-    """Bearing noise of bodies that a scan has shown to the same length in both directions.
+    """Bearing noise for bodies of the scan, whose error is equal in both directions.
 
     Args:
         range_m: Shape (M,).

@@ -1,4 +1,4 @@
-"""What earlier images and scans told: of the room, of whose hands there are, of who sits."""
+"""What is remembered of earlier images and scans: furniture, owners of hands, who sits."""
 
 from __future__ import annotations
 

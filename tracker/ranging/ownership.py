@@ -1,4 +1,4 @@
-"""Whose hand is it? A distribution over everybody who could be its owner, and somebody not seen.
+"""Whose hand is it? Probabilities of everybody who could be the owner, and of somebody unseen.
 
 The owner of a hand stands beside its ray, at the distance that its size tells. For somebody who
 stands a to the left of the ray and r along it, the hand that raised says
@@ -166,7 +166,7 @@ class Ownership:
     def _hidden(
         self, tracked: Tracks, people: PersonClusters, stamp_ns: int
     ) -> tuple[_Hidden, BoolArray]:
-        """Whom the scan does not show now but has shown; and who has only been guessed by hands.
+        """People the scan showed earlier but not now, and people known only by their hands.
 
         A guess is the very person not seen, and no rival to whom the scan shows.
         """

@@ -1,4 +1,4 @@
-"""What does a hand in the picture say of its owner? Where beside the ray, and how far along it.
+"""Where is the owner of a hand? To the side of its ray, and how far along it.
 
 A raised hand stands beside the body, and a laser at leg height looks past the body at the wall:
 the beam at the hand's own bearing is the wrong one to ask. But the thumb of a raised hand points

@@ -1,4 +1,4 @@
-"""Which customers sit? What a body's pose has told stays true while the hand is down."""
+"""Which customers sit? It is remembered while the hand is down."""
 
 from __future__ import annotations
 

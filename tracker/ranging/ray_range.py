@@ -1,4 +1,4 @@
-"""How far is it along the hand's own ray? The specification's median, with parallax."""
+"""What is the range along the hand's ray? The specification's median, with parallax."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tracker.ranging.scan.beams import median_range
 def range_along_rays(
     rays: HandRays, scan: LocatedScan, window_beams: int, jump_m: float
 ) -> FloatArray:
-    """Algorithm 5 at each ray, for a laser that stands and looks elsewhere than the camera.
+    """Algorithm 5 at each ray, for a laser that is not at the camera's place.
 
     Where laser and camera coincide this is the median at the hand's bearing itself. Elsewhere the
     beam that counts is the one whose point lies on the camera's ray; of several the nearest.

@@ -37,7 +37,7 @@ _LARGEST_METADATA = 20_000_000
 
 
 def is_bag_file(path: Path) -> bool:
-    """By its name, packed or not: .mcap, .db3, .bag, .bag.active, .mcap.zstd ..."""
+    """Whether a name is that of a recording: .mcap, .db3, .bag, .bag.active, .mcap.zstd ..."""
     return _suffix(path) in _SOURCES
 
 
@@ -88,7 +88,7 @@ def _open_folder(folder: Path) -> Source:
         except RecordingError as error:
             broken.append(str(error))
     if not parts:
-        reason = broken[0] if broken else f"{folder}: holds no recording."
+        reason = broken[0] if broken else f"{folder}: contains no recording."
         raise RecordingError(f"{reason} `ros2 bag reindex` renews a folder's metadata.yaml.")
     return Row("ROS 2 recording", parts, notes, broken)
 
@@ -105,12 +105,12 @@ def _listed(folder: Path) -> tuple[list[Path], list[str]]:
     names_of = {_NUMBER.sub("", file.name.split(".")[0]) for file in there}
     if len(names_of) > 1:
         raise RecordingError(
-            f"{folder}: holds several recordings, {listing(file.name for file in there)}; "
+            f"{folder}: contains several recordings, {listing(file.name for file in there)}; "
             "name one of them."
         )
     missing = [file.name for file in listed if not file.is_file()]
     if missing:
-        state = f"names {missing[0]}, which is not there"
+        state = f"names {missing[0]}, which does not exist"
     return there, [f"{folder}: metadata.yaml {state}; read by file."]
 
 

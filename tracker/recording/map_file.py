@@ -58,7 +58,9 @@ def load_map(path: str | Path) -> OccupancyGrid:
     path = Path(path)
     document = read_yaml(path)
     if not isinstance(document, dict):
-        raise ConfigError(f"{path}: holds no map; `image:`, `resolution:`, `origin:` are needed.")
+        raise ConfigError(
+            f"{path}: contains no map; expected `image:`, `resolution:` and `origin:`."
+        )
     try:
         said = _MapFile.model_validate(document)
     except ValidationError as error:
@@ -87,7 +89,7 @@ def _shades(path: Path) -> tuple[FloatArray, FloatArray | None]:
     except cv2.error:  # larger than OpenCV decodes
         picture = None
     if picture is None or picture.dtype not in (np.uint8, np.uint16):
-        raise ConfigError(f"{path}: is no picture of 8 or 16 bits; PGM, PNG or BMP is needed.")
+        raise ConfigError(f"{path}: is not a picture of 8 or 16 bits; expected PGM, PNG or BMP.")
     if picture.shape[0] * picture.shape[1] > _MAX_CELLS:
         raise ConfigError(
             f"{path}: has {picture.shape[1]}x{picture.shape[0]} pixels; a map has {_MAX_CELLS} "

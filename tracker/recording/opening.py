@@ -67,7 +67,7 @@ def _open_source(path: Path, image_topic: str, photo_period_s: float, max_pixels
         photos = photos_in(path)
         if not photos:
             raise RecordingError(
-                f"{path}: holds neither a rosbag2 recording nor photos; needed is a folder with "
+                f"{path}: contains neither a rosbag2 recording nor photos; expected a folder with "
                 f"metadata.yaml, or with {', '.join(sorted(PHOTO_SUFFIXES))} files."
             )
         return PhotoSource(photos, image_topic, photo_period_s)
@@ -78,4 +78,6 @@ def _open_source(path: Path, image_topic: str, photo_period_s: float, max_pixels
     if suffix in PHOTO_SUFFIXES:
         return PhotoSource([path], image_topic, photo_period_s)
     known = sorted(_BAG_SUFFIXES | VIDEO_SUFFIXES | PHOTO_SUFFIXES)
-    raise RecordingError(f"{path}: is of no known kind; known are {', '.join(known)} and folders.")
+    raise RecordingError(
+        f"{path}: has no supported format; supported are {', '.join(known)} and folders."
+    )

@@ -16,7 +16,7 @@ from tracker.errors import RecordingError
 from tracker.messages import Event
 from tracker.messages.images import Picture, picture_from_file
 from tracker.messages.picture_size import MAX_PIXELS, PictureSize, check_pixels, picture_size
-from tracker.recording.sources import RawMessage, TopicInfo, unreadable
+from tracker.recording.sources import RawMessage, Reading, TopicInfo, unreadable
 
 VIDEO_SUFFIXES = frozenset({".mp4", ".avi", ".mkv", ".webm", ".mov", ".m4v"})
 PHOTO_SUFFIXES = frozenset({".jpg", ".jpeg", ".png", ".bmp", ".webp"})
@@ -68,7 +68,7 @@ class VideoSource:
         self._is_fps_known = bool(np.isfinite(fps) and 0.1 < fps < 1000.0)
         self._fps = fps if self._is_fps_known else _FALLBACK_FPS
         if not self._is_fps_known:
-            self.notes.append(f"{path}: says no frame rate; {_FALLBACK_FPS:g} per second assumed.")
+            self.notes.append(f"{path}: has no frame rate; {_FALLBACK_FPS:g} per second assumed.")
         self.topics = {topic: TopicInfo("video frames", self._count)}
         self.start_ns, self.end_ns = 0, int(max(self._count - 1, 0) / self._fps * 1e9)
 
@@ -89,7 +89,10 @@ class VideoSource:
                     late_frames = round(capture.get(_FRAME_TIME))
                 if number:  # some containers know no time, and some repeat one
                     stamp_ns = at_ns if at_ns > stamp_ns else stamp_ns + period_ns
-                yield RawMessage(self._topic, "", stamp_ns, _image(stamp_ns, bgr))
+                image = _image(stamp_ns, bgr)
+                yield RawMessage(
+                    self._topic, "", stamp_ns, [image], lambda message, _: message.data
+                )
                 number += 1
         finally:
             capture.release()
@@ -99,14 +102,8 @@ class VideoSource:
         if self._count - reached > max(_MISSING_SHARE * self._count, 3):
             raise RecordingError(
                 f"{self._path}: cannot be decoded beyond frame {number} of {self._count} "
-                f"({stamp_ns / 1e9:.3f} s). What came before was read. {_VIDEO_REMEDY}"
+                f"({stamp_ns / 1e9:.3f} s). Everything before was read. {_VIDEO_REMEDY}"
             )
-
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """As `Source.read`."""
-        return [message.data]
 
     def close(self) -> None:
         """Nothing stays open between calls."""
@@ -114,9 +111,13 @@ class VideoSource:
     def _open(self) -> cv2.VideoCapture:
         capture = cv2.VideoCapture(str(self._path))
         if not capture.isOpened():
-            raise unreadable(self._path, "OpenCV finds no video in it", _VIDEO_REMEDY)
+            raise unreadable(self._path, "OpenCV cannot read a video from it", _VIDEO_REMEDY)
         capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)  # as phones are held; OpenCV 4.11 does not
         return capture
+
+
+def _as_is(message: RawMessage, _: Reading) -> list[Event]:
+    return list(message.data)
 
 
 def _image(stamp_ns: int, bgr: Any) -> CameraImage:
@@ -153,17 +154,15 @@ class PhotoSource:
         """As `Source.messages`."""
         if self._topic in topics:
             for number, path in enumerate(self._paths):
-                yield RawMessage(self._topic, "", number * self._period_ns, path)
-
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """As `Source.read`."""
-        picture = _read_picture(message.data, max_pixels)
-        return [CameraImage(message.log_ns, "", picture.bgr, picture.remark)]
+                yield RawMessage(self._topic, "", number * self._period_ns, path, _read)
 
     def close(self) -> None:
         """Nothing stays open between calls."""
+
+
+def _read(message: RawMessage, how: Reading) -> list[Event]:
+    picture = _read_picture(message.data, how.max_pixels)
+    return [CameraImage(message.log_ns, "", picture.bgr, picture.remark)]
 
 
 def read_photo(path: Path, max_pixels: int = MAX_PIXELS) -> ImageArray:
@@ -183,7 +182,7 @@ def _bytes_of(path: Path) -> NDArray[np.uint8]:
     try:
         size = path.stat().st_size
         if size > _PHOTO_MAX_BYTES:
-            raise RecordingError(f"{path}: has {size} bytes; no photo has that many.")
+            raise RecordingError(f"{path}: has {size} bytes; that is too large for a photo.")
         return np.frombuffer(path.read_bytes(), dtype=np.uint8)
     except OSError as error:
         raise unreadable(path, error.strerror, "Check its rights.") from error

@@ -14,7 +14,7 @@ from tracker.containers import CameraImage, Scan
 from tracker.errors import RecordingError, TrackerError
 from tracker.messages import DECODABLE, Event, types
 from tracker.messages.picture_size import MAX_PIXELS
-from tracker.recording.sources import RawMessage, Source, TopicInfo, seconds_into
+from tracker.recording.sources import RawMessage, Reading, Source, TopicInfo, seconds_into
 from tracker.recording.topics import IMAGES, TRANSFORMS, Topics, TopicTable
 from tracker.wording import listing, one_line
 
@@ -81,7 +81,7 @@ class Recording(Closing):
         max_pixels: int = MAX_PIXELS,
     ) -> None:
         if stamps not in ("header", "log"):
-            raise RecordingError(f"stamps={stamps!r} came; needed is header or log.")
+            raise RecordingError(f"stamps={stamps!r} was given; expected header or log.")
         self.path = path
         self.skipped: dict[str, Skipped] = {}
         self._source = source
@@ -156,7 +156,7 @@ class Recording(Closing):
     def skipped_lines(self) -> list[str]:
         """One sentence for each topic of which something could not be used."""
         return [
-            f"{one_line(topic)}: {skipped.count} not usable, the first {skipped.first}"
+            f"{one_line(topic)}: {skipped.count} unusable messages, the first: {skipped.first}"
             for topic, skipped in sorted(self.skipped.items())
         ]
 
@@ -177,7 +177,7 @@ class Recording(Closing):
             else "A recording with images is needed"
         )
         raise RecordingError(
-            f"{self.path}: no images on {one_line(self._asked.image)}; the recording holds "
+            f"{self.path}: no images on {one_line(self._asked.image)}; the recording contains "
             f"{self._table.described() or 'nothing'}. {remedy}."
         )
 
@@ -222,11 +222,8 @@ class Recording(Closing):
 
     def _read(self, message: RawMessage, *, is_static: bool = False) -> list[Event]:
         try:
-            events = self._source.read(
-                message,
-                is_static=is_static,
-                max_pixels=self._max_pixels,
-                is_depth=self._is_of_depth(message.topic),
+            events = message.read(
+                Reading(self._max_pixels, is_static, self._is_of_depth(message.topic))
             )
         except TrackerError as error:
             self._skip(message, str(error))
@@ -235,7 +232,7 @@ class Recording(Closing):
             events = [_restamped(event, message.log_ns) for event in events]
         usable = [event for event in events if _is_in_time(event)]
         if len(usable) < len(events):
-            self._skip(message, "its stamp lies beyond what ROS can say, the year 2038")
+            self._skip(message, "its stamp is after 2038, which ROS cannot represent")
         return usable
 
     def _skip(self, message: RawMessage, why: str) -> None:
@@ -278,9 +275,7 @@ class Recording(Closing):
                 self._used() & {self.read_topics.image, self.read_topics.scan}
             ):
                 with suppress(TrackerError):  # counted by `events`
-                    for event in self._source.read(
-                        message, is_static=False, max_pixels=self._max_pixels
-                    ):
+                    for event in message.read(Reading(self._max_pixels)):
                         if isinstance(event, CameraImage | Scan):
                             offsets_s.append((event.stamp_ns - message.log_ns) / 1e9)
                 if len(offsets_s) >= _STAMPS_COMPARED:

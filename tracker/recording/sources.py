@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple, Protocol
 
 from tracker.errors import RecordingError
-from tracker.messages import Event
+from tracker.messages import Event, decode
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +25,20 @@ class TopicInfo:
     count: int
 
 
+class Reading(NamedTuple):
+    """How messages are read.
+
+    Attributes:
+        max_pixels: Larger pictures are refused.
+        is_static: Transforms last.
+        is_depth: Pictures hold depths.
+    """
+
+    max_pixels: int
+    is_static: bool = False
+    is_depth: bool = False
+
+
 class RawMessage(NamedTuple):
     """One message as it lies in the file.
 
@@ -32,13 +46,25 @@ class RawMessage(NamedTuple):
         topic: Where it was published.
         type_name: `package/msg/Name`.
         log_ns: When it was recorded.
-        data: What the source that made it understands.
+        data: What `reader` understands.
+        reader: Of this kind of file; by default of ROS 2's.
     """
 
     topic: str
     type_name: str
     log_ns: int
     data: Any
+    reader: Callable[[RawMessage, Reading], list[Event]] = lambda message, how: decode(
+        message.type_name, message.data, **how._asdict()
+    )
+
+    def read(self, how: Reading) -> list[Event]:
+        """What it says.
+
+        Raises:
+            TrackerError: Nothing that makes sense.
+        """
+        return self.reader(self, how)
 
 
 class Source(Protocol):
@@ -58,15 +84,6 @@ class Source(Protocol):
 
         Raises:
             RecordingError: The file is damaged; everything that can be read has been yielded.
-        """
-
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """What one message says; pictures of up to `max_pixels`.
-
-        Raises:
-            TrackerError: Nothing that makes sense.
         """
 
     def close(self) -> None:
@@ -110,14 +127,6 @@ class Row:
             more = f" ... and {len(errors) - 1} more of its files" if errors[1:] else ""
             raise RecordingError(errors[0] + more)
 
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """As `Source.read`; the parts are of one kind."""
-        return self._parts[0].read(
-            message, is_static=is_static, max_pixels=max_pixels, is_depth=is_depth
-        )
-
     def close(self) -> None:
         """As `Source.close`."""
         for part in self._parts:
@@ -147,14 +156,6 @@ class WrappedSource:
             yield from self._source.messages(topics)
         except RecordingError as error:
             raise RecordingError(str(error).replace(self._place, self._name)) from error
-
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """As `Source.read`."""
-        return self._source.read(
-            message, is_static=is_static, max_pixels=max_pixels, is_depth=is_depth
-        )
 
     def close(self) -> None:
         """As `Source.close`."""

@@ -92,7 +92,7 @@ class TopicTable:
         scans = self.of_type(types.LASER_SCAN)
         if scans:
             return (
-                f"no scans on {one_line(scan)}, so none are used; they are on {listing(scans)}. "
+                f"no scans on {one_line(scan)}, so none are used; scans are on {listing(scans)}. "
                 "Pass one of them as --scan-topic."
             )
         for type_name, tool in _OTHER_SCANS.items():
@@ -116,8 +116,8 @@ class TopicTable:
         if not missing or not others:
             return ""
         return (
-            f"no transforms on {listing(missing)}; {listing(others)} is not read. Name what is "
-            "wanted by --tf-topic and --tf-static-topic."
+            f"no transforms on {listing(missing)}; {listing(others)} is not read. Choose the "
+            "topics with --tf-topic and --tf-static-topic."
         )
 
     def described(self) -> str:

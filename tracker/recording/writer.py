@@ -74,9 +74,7 @@ class RecordingWriter(GrowingOutput):
                 negative, the recording is closed or the disk full.
         """
         if not self._is_open:
-            raise RecordingError(
-                f"{self.path}: is closed; write before the end of the with block."
-            )
+            raise RecordingError(f"{self.path}: is closed; write inside the with block.")
         if not 0 <= log_ns < 2**63:
             raise RecordingError(f"{self.path}: a log time of {log_ns} ns came; it begins at 0.")
         if self._jpeg_quality is not None and isinstance(item, CameraImage):
@@ -136,7 +134,7 @@ class RecordingWriter(GrowingOutput):
     def _create(self, overwrite: bool) -> BinaryIO:
         if self.path.exists() and not overwrite:
             raise RecordingError(
-                f"{self.path}: exists already; choose another name, or overwrite it by --force."
+                f"{self.path}: exists already; choose another name, or replace it with --force."
             )
         if self.path.exists() and self.path.is_dir() != self._is_folder:
             kind = "a folder" if self._is_folder else "a file that ends in .mcap"

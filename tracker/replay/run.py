@@ -1,4 +1,4 @@
-"""What would the robot have done? A recording through the very pipeline that runs on the robot.
+"""Run the robot's pipeline on a recording.
 
 Reads any recording, writes `output.mcap`, `tracks.csv`, `summary.json`, `overview.png` and
 `debug.mp4`. Streams: memory does not grow with the recording.
@@ -40,7 +40,7 @@ Watcher = Callable[[CameraImage, FrameResult, float], None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Replay:
-    """What came of a recording.
+    """The result of a replay.
 
     Attributes:
         history: Everybody's tracks, raised hands and the room, for tables and pictures.
@@ -72,7 +72,7 @@ def replay(
     watch: Watch | None = None,
     watchers: Sequence[Watcher] = (),
 ) -> Replay:
-    """Run a recording through the pipeline and write everything that comes of it.
+    """Run the pipeline on a recording and write all results.
 
     A recording that breaks off, or holds broken messages, is replayed as far as it goes; what was
     wrong stands in `Replay.problems`, and everything written until then can be read.
@@ -97,7 +97,7 @@ def replay(
     """
     config, out = config or Config(), Path(out)
     problems = Problems()
-    history = History()
+    history = History(config)
     evaluation = EpisodeEvaluation()
     has_truth, frames_seen = False, 0
     check_inputs_stay([Path(source)], replay_files(out))
@@ -114,7 +114,7 @@ def replay(
         if not recording.has_images:
             if not recording.has_scans or recording.image_topics:
                 recording.require_images()
-            problems.remark("no images in the recording: nobody can be seen raising a hand")
+            problems.remark("no images in the recording: raised hands cannot be found")
         pipeline = Pipeline(config, detector, watch=watch, image_topic=recording.read_topics.image)
         held.enter_context(FolderLock(out))
         with ReplayOutputs(out, config) as outputs:
@@ -194,7 +194,7 @@ def _feed(pipeline: Pipeline, event: Event, log_ns: int, problems: Problems) -> 
         problems.add("unusable transform", str(error))
         return
     if verdict is not None and verdict.is_refused and isinstance(event, CameraImage):
-        text = f"image left out: its stamp {event.stamp_ns / 1e9:.3f} s is {verdict.value}"
+        text = f"image skipped: its stamp {event.stamp_ns / 1e9:.3f} s is {verdict.value}"
         if verdict is Verdict.LATE:
             problems.remark(text, kind=verdict.name)
         else:
@@ -234,6 +234,6 @@ def _note_missing(
     problems.add(
         "missing transforms",
         f"no transform from {config.camera_frame!r} to {config.fixed_frame!r} at any image's "
-        f"stamp, so nobody has a pose; frames heard of: {heard}. Set camera_frame and "
+        f"stamp, so nobody has a pose; known frames: {heard}. Set camera_frame and "
         f"fixed_frame, or fixed_frame: {config.camera_frame} to track relative to the camera.",
     )

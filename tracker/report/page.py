@@ -1,4 +1,4 @@
-"""How do text, tables and pictures become one HTML file that needs nothing beside it?
+"""Text, tables and pictures as one HTML file that needs no other file.
 
 The page loads nothing and runs nothing, and tells the browser to refuse what would: pictures are
 inside, folded sections are the browser's own. Whatever a recording brings is escaped.
@@ -166,12 +166,10 @@ class Section:
     Attributes:
         title: Its heading.
         parts: From top to bottom; a section without any is left out.
-        is_folded: Opened by the reader; printed open.
     """
 
     title: str
     parts: tuple[Part, ...]
-    is_folded: bool = False
 
 
 @dataclass(frozen=True, slots=True)

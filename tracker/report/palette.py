@@ -1,4 +1,4 @@
-"""Which color is whose? The same person has the same color in every picture."""
+"""Colors: each person has the same color in every picture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""With what was this made? The settings that are not the defaults, versions, the command."""
+"""How was this made? Parameters that differ from the defaults, versions, the command."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ _DISTRIBUTIONS = (
 )  # fmt: skip
 
 
-def settings_section(config: Config, default: Config | None = None) -> Section:
+def settings_section(config: Config) -> Section:
     """The parameters that differ from the defaults, with what they mean.
 
     Args:
         config: The parameters in force.
-        default: What they are held against; every parameter's own default where None.
     """
-    default = default or Config()
+    default = Config()
     changed = [
         name for name in Config.model_fields if getattr(config, name) != getattr(default, name)
     ]

@@ -1,4 +1,4 @@
-"""Who waits for service? Calls are kept after the hand falls, until somebody has come.
+"""Who waits for service? A call is kept after the hand goes down.
 
 A call belongs to a person, and a person has one number: a hand that goes up once more while the
 call is open changes nothing, and who is lost and found again at the same place keeps the number.
@@ -111,7 +111,7 @@ class CallKeeper:
         self._renew(self._now.stamp_ns)
 
     def restore(self, kept: WaitingList) -> None:
-        """Go on with a list of before, beside whoever has called since; nobody is in sight."""
+        """Continue with an earlier list, together with new calls; nobody is in sight."""
         if self._now.selected_id is None:
             self._now = replace(self._now, selected_id=kept.selected_id)
         for caller in sorted(kept.callers, key=lambda caller: caller.state_since_ns):
@@ -154,7 +154,7 @@ class CallKeeper:
                 self._callers[caller.id] = replace(caller, missing_s=caller.missing_s + lapse_s)
 
     def _hear(self, tracks: Tracks) -> None:
-        """Whose hand is up, and where everybody stands: new calls, and those who call again."""
+        """Update places, and begin or renew the calls of people whose hand is up."""
         by_track = {caller.track_id: caller for caller in self._callers.values()}
         fresh = tracks.unseen_s <= self.config.pose_max_age_s
         columns = tracks.id.tolist(), tracks.raised.tolist(), fresh.tolist(), _places(tracks)
@@ -243,7 +243,7 @@ class CallKeeper:
 _LEADS_TO = {
     Verb.SERVE: (CallState.BEING_SERVED, "is being served"),
     Verb.SERVED: (CallState.SERVED, "is served"),
-    Verb.WAIT: (CallState.WAITING, "waits, behind the others"),
+    Verb.WAIT: (CallState.WAITING, "waits behind the others"),
     Verb.RELEASE: (CallState.GONE, "is released"),
     Verb.IGNORE: (CallState.IGNORED, "is ignored"),
 }

@@ -1,4 +1,4 @@
-"""What may a robot's program, or a person, say about the waiting list?"""
+"""Which commands change the waiting list?"""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tracker.wording import shown
 
 
 class Verb(str, Enum):
-    """What should happen; the values are the words of the commands."""
+    """The kinds of commands; the values are their words."""
 
     SERVE = "serve"
     SERVED = "served"
@@ -52,11 +52,14 @@ class Command:
         verb = verbs.get(words[0].lower()) if words else None
         if verb is None:
             raise ConfigError(
-                f"{shown(text)} is no command; there are {', '.join(verbs)}, as `serve 3`."
+                f"{shown(text)} is not a command; commands are {', '.join(verbs)}, for example "
+                "`serve 3`."
             )
         numbers = words[1:]
         if len(numbers) > 1 or (numbers and verb is Verb.CLEAR):
-            raise ConfigError(f"{shown(text)} has too many words; allowed is one number at most.")
+            raise ConfigError(
+                f"{shown(text)} has too many words; a command has at most one number."
+            )
         if not numbers:
             if verb not in _WITHOUT_NUMBER:
                 raise ConfigError(
@@ -64,7 +67,7 @@ class Command:
                 )
             return Command(verb)
         if not (numbers[0].isascii() and numbers[0].isdigit() and len(numbers[0]) <= 18):
-            raise ConfigError(f"{shown(numbers[0])} is no customer's number, as 3.")
+            raise ConfigError(f"{shown(numbers[0])} is not a customer's number, such as 3.")
         return Command(verb, int(numbers[0]))
 
 

@@ -1,4 +1,4 @@
-"""Is somebody who has just appeared the one who was lost there?"""
+"""Is a person who has just appeared the one who was lost there?"""
 
 from __future__ import annotations
 

@@ -67,9 +67,9 @@ def robot_pose(scene: Scene, time_s: float) -> RigidTransform:
     )
 
 
-def planar_transform(pose: Pose2, z_m: float = 0.0) -> RigidTransform:
+def planar_transform(pose: Pose2) -> RigidTransform:
     """A scene file's place and direction as `parent_from_child`."""
-    return RigidTransform.from_planar(pose.x_m, pose.y_m, float(np.radians(pose.yaw_deg)), z_m)
+    return RigidTransform.from_planar(pose.x_m, pose.y_m, float(np.radians(pose.yaw_deg)))
 
 
 def people_at(scene: Scene, time_s: float) -> People:

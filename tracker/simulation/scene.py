@@ -219,7 +219,9 @@ class Scene(Part):
         ids = [person.id for person in self.people]
         twice = {number for number in ids if ids.count(number) > 1}
         if twice:
-            raise ValueError(f"people: the id {min(twice)} occurs twice; each needs its own")
+            raise ValueError(
+                f"people: the id {min(twice)} occurs twice; each person needs a different one"
+            )
         if self.laser.range_max_m <= self.laser.range_min_m:
             raise ValueError(
                 f"laser.range_max_m is {self.laser.range_max_m}; allowed is "
@@ -253,7 +255,7 @@ def scene_from_mapping(document: Any, origin: str = "scene") -> Scene:
         SceneError: As `load_scene`.
     """
     if not isinstance(document, dict):
-        raise SceneError(f"{origin}: holds no scene; keys like `duration_s:` are needed.")
+        raise SceneError(f"{origin}: contains no scene; expected keys such as `duration_s:`.")
     try:
         return Scene.model_validate(document)
     except ValidationError as error:
@@ -280,7 +282,7 @@ def _find(name_or_path: str | Path) -> Path:
         if packaged.is_file():
             return packaged
     raise SceneError(
-        f"No scene is called {str(name_or_path)!r}; there are "
+        f"There is no scene {str(name_or_path)!r}; there are "
         f"{', '.join(scene_names()) or 'none'}. A file of your own needs its ending, .yaml."
     )
 

@@ -54,7 +54,7 @@ def simulate(scene: Scene, seed: int) -> Iterator[tuple[int, Event]]:
         SceneError: The seed is negative.
     """
     if seed < 0:
-        raise SceneError(f"The seed is {seed}; needed is a whole number from 0 on.")
+        raise SceneError(f"The seed is {seed}; expected a whole number, 0 or more.")
     camera_rng, scan_rng, depth_rng = (np.random.default_rng([seed, row]) for row in range(3))
     painter = CameraView(scene, camera_rng)
     start_ns = scene.start_s * 1_000_000_000

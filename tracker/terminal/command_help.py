@@ -13,7 +13,7 @@ from tracker.terminal.program import print_version
 VersionOption = Annotated[
     bool,
     typer.Option(
-        "--version", help="Print the version and leave.", is_eager=True, callback=print_version
+        "--version", help="Print the version and exit.", is_eager=True, callback=print_version
     ),
 ]
 

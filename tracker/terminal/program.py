@@ -1,4 +1,4 @@
-"""How does a program of ours end? In one line and a status, whatever stops it.
+"""How do our programs end? With one line and an exit status.
 
 Exit status: 0 done, 1 something failed or the input was broken, 2 the words on the command line
 were wrong, 130 stopped by Ctrl-C.
@@ -68,11 +68,11 @@ def _outcome(body: Callable[[], None]) -> tuple[int, str]:
             return _interrupted()
         return leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None), ""
     except MemoryError:
-        return 1, "there is not enough memory; give the process more, or less to do."
+        return 1, "there is not enough memory; give the process more memory, or less work."
     except ImportError as error:
         if not str(error.path).endswith((".so", ".pyd")):
             raise
-        return 1, f"a library cannot be loaded ({error}); mostly the memory is too small."
+        return 1, f"a library cannot be loaded ({error}); often there is too little memory."
     except BrokenPipeError:  # `| head` has seen enough
         return 1, ""
     except OSError as error:
@@ -91,11 +91,11 @@ def _check_words() -> None:
     """
     for word in sys.argv[1:]:
         if not word.isascii() and any("\ud800" <= letter <= "\udfff" for letter in word):
-            raise ConfigError(f"{word}: is no UTF-8 text; give the file another name.")
+            raise ConfigError(f"{word}: is not UTF-8 text; rename the file.")
 
 
 def _check_memory() -> None:
-    """Refuse to begin where libraries crash as they are loaded, without a word.
+    """Refuse to start with so little memory that libraries crash while loading.
 
     Raises:
         ConfigError: The address space is limited to less.
@@ -107,18 +107,18 @@ def _check_memory() -> None:
     limit, _ = getrlimit(RLIMIT_AS)
     if limit != RLIM_INFINITY and limit < _ADDRESSES_MIN:
         raise ConfigError(
-            f"The address space is limited to {limit / 1e9:.2f} GB (ulimit -v); needed are "
-            f"{_ADDRESSES_MIN / 1e9:g} GB, and 3 for the work with pictures."
+            f"The address space is limited to {limit / 1e9:.2f} GB (ulimit -v); expected "
+            f"{_ADDRESSES_MIN / 1e9:g} GB, and 3 GB for images."
         )
 
 
 def _interrupted() -> tuple[int, str]:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C comes to the same
-    return INTERRUPTED, "stopped; what was written until now can be read."
+    return INTERRUPTED, "stopped; the files written so far can be read."
 
 
 def _print_last(text: str) -> None:
-    """Say the last word, and leave nothing behind that fails as the interpreter ends."""
+    """Print the last line, and avoid errors while the interpreter ends."""
     for stream, words in ((sys.stdout, ""), (sys.stderr, f"{text}\n")):
         if stream is None:
             continue

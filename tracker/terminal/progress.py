@@ -1,4 +1,4 @@
-"""How far is it? Progress bars on standard error, quiet where nobody watches."""
+"""Progress bars on standard error; few lines if it is not a terminal."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rich.text import Text
 
 from tracker.wording import counted
 
-#: Without a terminal a line is printed so often, in seconds.
+#: Without a terminal, a line is printed at this interval, in seconds.
 _SILENCE_S = 10.0
 
 
@@ -66,7 +66,7 @@ def bar(console: Console, what: str) -> Iterator[Callable[[float, int], None]]:
 
 @contextmanager
 def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[int], None]]:
-    """Show how many are done, how many a second, and the time left.
+    """Show how many are done, how many per second, and the time left.
 
     Args:
         console: Where to.
@@ -74,7 +74,7 @@ def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
         total: How many there will be.
 
     Yields:
-        A function of how many are done; the first call tells how many were done before.
+        A function of how many are done; the first call says how many were done before.
     """
     if not console.is_terminal:
         console.print(f"Running {counted(total, what)} ...", highlight=False)
@@ -98,12 +98,12 @@ def counting_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
 def trials_bar(
     console: Console, trials: int, unseen: int | None
 ) -> Iterator[tuple[Callable[[int, float], None], Callable[[int], None]]]:
-    """Show how many trials of a search are done, and the best figure so far; then the verdict.
+    """Show how many trials of a search are done, and the best so far; then the final test.
 
     Args:
         console: Where to.
         trials: In all.
-        unseen: Scenes that the verdict looks at; None where they are not counted.
+        unseen: Scenes of the final test; None if they are not counted.
 
     Yields:
         A function of the number of trials and the figure (NaN before there is one), and one of the
@@ -121,14 +121,14 @@ def trials_bar(
 
         def announce(scenes: int) -> None:
             if scenes == 0:
-                console.print("Judging the best on what no trial has seen ...", highlight=False)
+                console.print("Testing the best on data that no trial used ...", highlight=False)
 
         say = _now_and_then(console)
         yield lambda done, best: say(f"{done} of {trials} ... best {best:.4g}"), announce
         return
     with Progress(*columns, console=console) as progress:
         task = progress.add_task("Trying", total=trials, best="")
-        verdict = progress.add_task("Judging on the unseen", total=unseen, best="", one_line=False)
+        verdict = progress.add_task("Final test", total=unseen, best="", one_line=False)
 
         def report(done: int, best: float) -> None:
             text = "" if isnan(best) else f"best {best:.4g}"
@@ -195,7 +195,7 @@ def fetch_models_if_needed(console: Console) -> None:
     found = {row.state for row in store.status()} - {ModelState.PRESENT}
     states = " or ".join(sorted(state.value for state in found))
     console.print(
-        f"The hand models are {states}; fetching them once, to {store.directory}",
+        f"The hand models are {states}; they are fetched once, to {store.directory}",
         highlight=False,
         soft_wrap=True,
     )

@@ -1,4 +1,4 @@
-"""How does a function of the user's own take the place of a step?"""
+"""How does a function of the user replace a step of the tracker?"""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ def association_by(associator: Associator | None) -> Associate:
         sums = *told.sum(axis=0), *told.sum(axis=1)
         if (told < 0.0).any() or max(sums, default=0.0) > 1.0 + _ROUNDING:
             raise ShapeError(
-                "`associate` gave numbers that are no probabilities; each track's and each "
-                "measurement's are wanted from 0 on, adding up to 1 at most."
+                "`associate` returned numbers that are not probabilities; those of each track "
+                "and of each measurement must be 0 or more and add up to at most 1."
             )
         pair_of = np.full((tracks, claims), -1)
         pair_of[pairs.track, pairs.claim] = np.arange(len(pairs.track))
@@ -79,7 +79,8 @@ def _checked(name: str, given: FloatArray, shape: tuple[int, ...]) -> FloatArray
     is_fit = numbers.shape == shape and np.isfinite(numbers).all()
     if not is_fit or (numbers.ndim == 3 and not are_semidefinite(numbers).all()):
         raise ShapeError(
-            f"The {name} have shape {numbers.shape}, or are not finite or no covariances; needed "
-            f"are finite numbers of shape {shape}, covariances symmetric and not negative."
+            f"The {name} have shape {numbers.shape}, or are not finite, or are not covariances; "
+            "expected "
+            f"finite numbers of shape {shape}, covariances symmetric and not negative."
         )
     return numbers

@@ -116,7 +116,7 @@ track_frame = make_frame(predict, associate)
 
 
 def interpreted(frame: Callable[..., Frame]) -> Callable[..., Frame]:
-    """A frame as Python runs it: quiet where machine code is, about infinities that are meant."""
+    """A frame as Python: without warnings about infinities, which are intended here."""
 
     def run(*numbers: Any) -> Frame:
         with np.errstate(all="ignore"):

@@ -1,4 +1,4 @@
-"""The frame as machine code: of which types it is, and where this process has it."""
+"""The compiled frame: its types, and where this process keeps it."""
 
 from __future__ import annotations
 
@@ -7,71 +7,44 @@ from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
+
+import numpy as np
 
 from tracker.compiling.machine import LOG, Machine
+from tracker.config import Config
+from tracker.containers import Measurements
+from tracker.containers.arrays import sealed
 from tracker.tracking.frame import track_frame
 from tracker.tracking.instant import Instant
 from tracker.tracking.life_cycle.renewal import Frame
-from tracker.tracking.people import People
-from tracker.tracking.sensing.claims import Claims
-from tracker.tracking.settings import RECORD
-from tracker.tracking.trace import Trace
+from tracker.tracking.people import room_for
+from tracker.tracking.prediction.motion import modes_of
+from tracker.tracking.sensing.claims import claims_of
+from tracker.tracking.sensing.view import view_numbers
+from tracker.tracking.settings import record_of, settings_of
+from tracker.tracking.trace import NO_TRACE
 
 
-class FrameTypes(NamedTuple):
-    """Numba's types of what a frame takes, in its order, and of what it gives."""
+def frame_types() -> tuple[Any, ...]:
+    """Numba's types of what a frame takes, in its order: those of a frame of nobody."""
+    from numba import typeof
 
-    people: Any
-    claims: Any
-    instant: Any
-    likeness: Any
-    settings: Any
-    trace: Any
-    frame: Any
-
-
-def frame_types() -> FrameTypes:
-    """The types; what is given from outside is read-only."""
-    from numba import from_dtype, types
-
-    def arrays(letters: str, kind: Any, readonly: bool = True) -> list[Any]:
-        return [types.Array(kind, int(each), "C", readonly=readonly) for each in letters]
-
-    number, whole, truth = types.float64, types.int64, types.boolean
-    people = types.NamedTuple(
-        [
-            *arrays("2342", number, readonly=False),
-            *arrays("2", whole, readonly=False),
-            *arrays("22", truth, readonly=False),
-        ],
-        People,
+    config = Config()
+    nobody = room_for(modes_of(config), 0, config.confirm_window)
+    instant = Instant(0, 0.0, 1, -1, view_numbers(None), view_numbers(None), False, True)
+    given = (
+        *(nobody, claims_of(Measurements.none()), instant, sealed(np.zeros((0, 0)))),
+        *(record_of(settings_of(config)), NO_TRACE),
     )
-    claims = types.NamedTuple(
-        [
-            *(*arrays("23", number), *arrays("1", whole), *arrays("23", number)),
-            *(*arrays("1", truth), *arrays("111", whole), *arrays("3", number)),
-        ],
-        Claims,
-    )
-    instant = types.NamedTuple(
-        [whole, number, whole, whole, *arrays("11", number), truth, truth], Instant
-    )
-    trace = types.NamedTuple(
-        [*arrays("3111", whole, readonly=False), *arrays("343", number, readonly=False)], Trace
-    )
-    merged = arrays("34", number, readonly=False)
-    frame = types.NamedTuple([people, *merged, whole, whole, whole], Frame)
-    likeness = arrays("2", number)[0]
-    return FrameTypes(people, claims, instant, likeness, from_dtype(RECORD), trace, frame)
+    return tuple(typeof(each) for each in given)
 
 
 def compiled_frame(folder: Path | None, may_compile: bool = True) -> Callable[..., Frame]:
     """`track_frame` as machine code; `compiler.compiled` says what the arguments are."""
     from tracker.compiling.compiler import compiled
 
-    *given, result = frame_types()
-    frame: Callable[..., Frame] = compiled(track_frame, result(*given), folder, may_compile)
+    frame: Callable[..., Frame] = compiled(track_frame, frame_types(), folder, may_compile)
     return frame
 
 
@@ -87,7 +60,7 @@ def _can_compile() -> bool:
 def machine() -> Machine | None:
     """The machine code of this process; None without numba."""
     if not _can_compile():
-        LOG.warning("numba cannot be used here, so that Python does the tracker's work, slowly.")
+        LOG.warning("numba cannot be used here; the tracker runs as Python, which is slow.")
         return None
     return Machine(compiled_frame)
 

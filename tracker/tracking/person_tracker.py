@@ -1,4 +1,4 @@
-"""The whole tracker in one call: measurements of an instant in, everybody's state out."""
+"""The whole tracker in one call: measurements of one instant in, tracks out."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ NO_LIKENESS = sealed(np.zeros((0, 0)))
 class PersonTracker:
     """Kalman-filtered customers, from raised hands and the people in the scan.
 
-    Raised hands create customers and feed their streaks; everything else only sustains and refines
-    those who are there. Bystanders, whom only the scan shows, are followed as well: what is known
-    to be somebody else's is not taken for a customer's. Identities count from 1 and are never
-    reused by one tracker.
+    Raised hands create customers and count for their streaks. Other measurements only keep known
+    people alive and improve their positions. Bystanders, who are only in the scan, are tracked as
+    well, so that their measurements are not assigned to customers. Identities count from 1 and are
+    never reused by one tracker.
 
     Args:
         config: The groups tracking, selection and service.
@@ -47,9 +47,9 @@ class PersonTracker:
         associate: An association of your own: log-odds of every track and measurement, shape
             (N, M), -inf outside the gate -> probabilities of the same shape, instead of
             `association` in the configuration.
-        watch: Told of every frame and what happened inside; see `tracking.trace`.
-        compiled: Let numba do a frame's work, as soon as it is compiled; the numbers are the same
-            up to rounding. With a function of your own Python does it.
+        watch: Called with every frame and what happened inside; see `tracking.trace`.
+        compiled: Use the compiled frame as soon as it is there; the results are equal except for
+            rounding. With a function of your own, frames run as Python.
     """
 
     def __init__(
@@ -110,7 +110,7 @@ class PersonTracker:
         self.calls.reset()
 
     def restore(self, kept: WaitingList) -> None:
-        """Go on with a waiting list of before; its numbers are given to nobody else."""
+        """Continue with an earlier waiting list; its numbers are not given to other people."""
         self._next_id = max([self._next_id, *(caller.id + 1 for caller in kept.callers)])
         self.calls.restore(kept)
 
@@ -123,7 +123,7 @@ class PersonTracker:
         self.calls.lower_hands()
 
     def doubt(self, moved: FloatArray, over_s: float) -> None:
-        """Widen what is believed of everybody by a motion that they may be off by.
+        """Widen everybody's covariance by a motion of the robot that was not measured.
 
         Args:
             moved: Shape (3,): x_m, y_m, yaw_rad of a rigid motion about the origin, such as the
@@ -232,7 +232,7 @@ class PersonTracker:
         )
         if told.shape != shape or not np.isfinite(told).all():
             raise ShapeError(
-                f"`likeness` has shape {told.shape}, or is infinite; needed are finite numbers of "
+                f"`likeness` has shape {told.shape}, or is infinite; expected finite numbers of "
                 f"shape {shape}: the customers of the last step, and the measurements."
             )
         everybody[rows] = told

@@ -1,4 +1,4 @@
-"""How do people outlive a change of the parameters?"""
+"""How are tracks kept when parameters change?"""
 
 from __future__ import annotations
 

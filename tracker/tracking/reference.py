@@ -1,4 +1,4 @@
-"""The tracker as a textbook has it: read this first, then the product's own files.
+"""The tracker as in a textbook: read this first, then the product's own files.
 
 One Kalman filter for each customer (FilterPy), one assignment for each frame (scipy), streaks that
 say whose hand is up. With z a measured position, R its covariance, and x = (x, y, vx, vy):
@@ -198,5 +198,5 @@ def _check_positions(measurements: Measurements) -> None:
     if others:
         raise MeasurementError(
             f"{others} of {len(measurements)} measurements are bearings or ranges; the reference "
-            "tracker takes positions alone. Give it `as_positions` of them, or use PersonTracker."
+            "tracker takes only positions. Give it `as_positions` of them, or use PersonTracker."
         )

@@ -1,11 +1,12 @@
-"""What does the outside see of everybody?"""
+"""What does the tracker return?"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from tracker.containers import IntArray, Tracks
-from tracker.containers.arrays import COUNTS, constant, sealed, trusted
+from tracker.containers.arrays import COUNTS, constant, sealed
+from tracker.containers.rows import trusted
 from tracker.tracking import people as field
 from tracker.tracking.life_cycle.renewal import Frame
 from tracker.tracking.update.bias import BIAS

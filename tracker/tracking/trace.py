@@ -1,4 +1,4 @@
-"""What happened inside a frame? Room in which the loops write it down for a watcher."""
+"""What happened inside a frame? Arrays in which the loops record it for a watcher."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Trace(NamedTuple):
 
     @staticmethod
     def room(measured: int, modes: int, people: int) -> Trace:
-        """Empty pages for whatever so many measurements and people can come to."""
+        """Empty arrays, large enough for this many measurements and people."""
         rounds, pairs = measured, measured * people
         return Trace(
             np.zeros((rounds, pairs, 3), dtype=np.int64),

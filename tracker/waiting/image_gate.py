@@ -14,14 +14,14 @@ _LATE_NS = 500_000_000
 
 
 class Verdict(Enum):
-    """What is to be done with an image; the value says why."""
+    """Whether an image is processed; the value says why."""
 
     ADMITTED = "its turn"
     JUMPED_BACK = "its turn, and the first of a new time"
     NOT_DUE = "not its turn at processing_rate"
     REPEATED = "the same stamp as the image before; does the driver fill in header.stamp?"
     LATE = "earlier than the image before, out of order"
-    ODD = "far from the stamp before; a new time is believed if the next image agrees"
+    ODD = "far from the stamp before; the new time is accepted if the next image agrees"
 
     @property
     def is_admitted(self) -> bool:

@@ -1,4 +1,4 @@
-"""Who waits for whom? Images for their transforms; scans and transforms for their images.
+"""Keeps images until their transforms come, and scans and transforms until images come.
 
 Replay, both nodes and the evaluation use this one room. Time is the data's own.
 """
@@ -98,8 +98,8 @@ class WaitingRoom:
         step = watch.judge(sample.stamp_ns)
         if step is Step.ODD:
             raise ClockError(
-                f"The stamp {sample.stamp_ns / 1e9:.3f} s of the transform of {sample.child!r} is "
-                "far from the one before; the new time is believed if the next one agrees."
+                f"The stamp {sample.stamp_ns / 1e9:.3f} s of the transform of {sample.child!r} "
+                "is far from the one before; the new time is accepted if the next one agrees."
             )
         if step is Step.JUMPED_BACK:
             self.transforms.forget_after(sample.stamp_ns)

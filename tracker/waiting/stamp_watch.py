@@ -16,8 +16,8 @@ class Step(Enum):
     """How a stamp follows those before."""
 
     ONWARD = "as it should"
-    LATE = "a little behind the newest one, as messages out of order are"
-    ODD = "far from the newest one; believed if the next one agrees"
+    LATE = "a little earlier than the newest one, as with messages out of order"
+    ODD = "far from the newest one; accepted if the next one agrees"
     JUMPED_BACK = "part of a new, earlier time"
 
 

@@ -75,7 +75,7 @@ def test_of_a_best_effort_camera_the_loss_is_told_with_its_remedy_and_passes(
     until(lambda: images.publishers == 1)
     sockets[0] += 300
     loss = watch.report()[Input.IMAGES].loss
-    assert loss.startswith("300 datagrams of late")
+    assert loss.startswith("300 datagrams recently")
     assert "425984 bytes" in loss
     assert "net.core.rmem_max" in loss
     node.spin_once(0.0)
@@ -115,5 +115,5 @@ def test_both_ends_name_the_policy_that_keeps_them_apart(make_node, until):
     until(lambda: strict.refused.times and careless.refused.times)
     assert strict.refused == careless.refused == (1, "reliability")
     assert links._link(strict).silence == (
-        "; 1 that offer less reliability than is asked for are not heard"
+        "; 1 offer less reliability than requested; nothing is received from them"
     )

@@ -139,18 +139,18 @@ def test_a_recording_that_arrives_leaves_no_doubts_but_of_topics_nobody_wanted(
     hear(listener, "/image_raw", IMAGE, Input.IMAGES)
     hear(listener, "/tf_static", TF_MESSAGE, Input.STATIC_TRANSFORMS)
     doubts = play(recording, rate=10.0).doubts
-    assert doubts == ["Nobody listened to /hand_raised."]
+    assert doubts == ["No subscriber was found for /hand_raised."]
 
 
 def test_nobody_at_all_is_told_with_what_to_check(recording, domain):
     (doubt,) = play(recording, rate=100.0, delay_s=0.1).doubts
-    assert "Nobody listened; check ROS_DOMAIN_ID" in doubt
+    assert "No subscriber was found; check ROS_DOMAIN_ID" in doubt
 
 
 def test_a_subscriber_that_asks_for_more_than_is_offered_is_told(recording, listener):
     hear(listener, "/image_raw", IMAGE, Input.STATIC_TRANSFORMS)
     doubts = play(recording, rate=10.0, topics=["/image_raw"]).doubts
-    assert "/image_raw: 1 subscribers ask for more durability than is offered" in doubts[-1]
+    assert "/image_raw: 1 subscribers request more durability than is offered" in doubts[-1]
 
 
 def test_datagrams_that_listeners_drop_are_told_with_the_remedy(recording, listener, monkeypatch):
@@ -159,7 +159,7 @@ def test_datagrams_that_listeners_drop_are_told_with_the_remedy(recording, liste
     monkeypatch.setattr(arrival, "dropped_in_domain", lambda domain_id: next(counts))
     hear(listener, "/image_raw", IMAGE, Input.IMAGES)
     (doubt,) = play(recording, rate=10.0, topics=["/image_raw"]).doubts
-    assert doubt.startswith("17 datagrams found no room")
+    assert doubt.startswith("17 datagrams did not fit")
     assert "net.core.rmem_max" in doubt
 
 
@@ -264,7 +264,7 @@ def test_echo_prints_what_is_said_as_yaml(make_node):
 
 
 def test_echo_says_when_nobody_speaks(domain):
-    with pytest.raises(RecordingError, match="Nobody publishes /nothing"):
+    with pytest.raises(RecordingError, match="There is no publisher of /nothing"):
         echo("/nothing", timeout_s=0.3)
 
 

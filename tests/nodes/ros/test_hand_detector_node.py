@@ -149,7 +149,7 @@ def test_a_file_of_an_earlier_version_starts_with_one_warning(run, ear, tmp_path
     assert not {"appearance_weight", "measurement_model"} & set(answer.result.names)
     [line] = [line for line in node.log().splitlines() if "appearance_weight" in line]
     assert line.startswith("[WARN]")
-    assert "`measurement_model` (bearing" in line
+    assert "`measurement_model` (measurements" in line
 
 
 def test_transforms_later_than_scans_and_images_cost_no_pose(ear, start_node, play, replayed):

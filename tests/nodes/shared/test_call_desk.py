@@ -75,7 +75,7 @@ def test_commands_are_answered_and_show_in_the_list_at_once(wire):
     assert say(wire, "serve 1") == "serve 1: done: customer 1 is being served"
     assert words(wire.messages(Output.WAITING_LIST)[-1].detections[0])[0] == "being_served"
     assert say(wire, "serve 4").startswith("serve 4: refused: no customer has the number 4")
-    assert say(wire, "sing").startswith("sing: refused: 'sing' is no command")
+    assert say(wire, "sing").startswith("sing: refused: 'sing' is not a command")
 
 
 def test_a_node_that_is_switched_off_keeps_who_waits(wire):
@@ -86,7 +86,7 @@ def test_a_node_that_is_switched_off_keeps_who_waits(wire):
     assert words(anna) == ["waiting", "approach"]
     wire.core.reset("test")
     wire.core.enable(True)
-    wire.detector.find = lambda image: Hands.none()
+    wire.detector.find = lambda image, hints: Hands.none()
     show(wire, range(20, 22))
     assert len(wire.messages(Output.WAITING_LIST)[-1].detections) == 0
 
@@ -110,7 +110,7 @@ def test_a_file_that_is_no_list_is_said_and_replaced(make_wire, tmp_path):
     path = tmp_path / "calls.json"
     path.write_text("{}")
     wire = make_wire(Config(waiting_list_file=str(path)))
-    assert any("no waiting list" in text for level, text in wire.logged if level == "warning")
+    assert any("not a waiting list" in text for level, text in wire.logged if level == "warning")
     wire.mounting()
     show(wire, range(8))
     assert json.loads(path.read_text())["callers"][0]["id"] == 1

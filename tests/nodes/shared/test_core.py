@@ -66,7 +66,7 @@ def test_an_image_waits_for_the_transform_of_its_own_stamp(wire):
     assert wire.detector.stamps_ns == []
     wire.base(START_NS + 1_000_000)
     wire.settle()
-    assert wire.diagnose()["transforms"].message == "the camera is located"
+    assert wire.diagnose()["transforms"].message == "the camera's position is known"
 
 
 def test_an_image_without_transform_waits_no_longer_than_told(wire):
@@ -199,8 +199,8 @@ def test_what_a_customer_says_is_told_once_and_taken_back(wire, monkeypatch):
         "fist", 1, np.random.default_rng(5), turn_max_deg=3.0, size_px=(20.0, 20.1)
     )  # fmt: skip
 
-    def shown(image):
-        return replace(see(image), landmarks_px=fist.landmarks_px + np.array([32.0, 24.0]))
+    def shown(image, hints):
+        return replace(see(image, hints), landmarks_px=fist.landmarks_px + np.array([32.0, 24.0]))
 
     monkeypatch.setattr(wire.detector, "find", shown)
     play(wire, 31)

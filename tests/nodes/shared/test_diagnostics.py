@@ -138,7 +138,7 @@ def test_intrinsics_that_do_not_fit_the_picture_are_told_by_both_sizes(wire):
 
 def test_a_map_is_not_missed_and_said_once_it_has_come(wire):
     assert wire.diagnose()["map"].level == OK
-    assert wire.diagnose()["map"].message.startswith("missing: furniture")
+    assert wire.diagnose()["map"].message.startswith("missing: only the scan")
     grid = OccupancyGrid(START_NS, "map", 0.05, (0.0, 0.0, 0.0), np.zeros((4, 4), np.int8))
     wire.core.receive(Input.MAP, encode(grid))
     wire.settle()

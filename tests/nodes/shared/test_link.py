@@ -6,7 +6,7 @@ from nodes.shared.link import Link
 @pytest.mark.parametrize(
     ("link", "silence"),
     [
-        (Link(0), ", which nobody publishes"),
+        (Link(0), ", which has no publisher"),
         (Link(0, refusal="2 were refused"), "; 2 were refused"),
         (Link(1), "; 1 publisher connected"),
         (Link(3, loss="all was lost"), "; 3 publishers connected, but all was lost"),

@@ -125,16 +125,16 @@ def test_a_wrong_parameter_file_is_one_line_and_status_2(run, tmp_path, model_st
 @pytest.mark.parametrize(
     ("assignment", "named"),
     [
-        ("lower_streak:=[", "-p lower_streak:=[: is no YAML"),
-        ("lower_streak:=%x", "is no YAML"),
-        ("lower_streak:=*x", "`*x`, which stands for nothing"),
+        ("lower_streak:=[", "-p lower_streak:=[: is not YAML"),
+        ("lower_streak:=%x", "is not YAML"),
+        ("lower_streak:=*x", "`*x`, which is not defined"),
         ("lower_streak:=2031-02-03", "'2031-02-03'; allowed is a whole number"),
         ("lower_streak:={a: 1}", "{'a': 1}; allowed is a whole number"),
         ("lower_streak:=3e0", "3.0; allowed is a whole number"),
         ("lower_streak:=" + "[" * 5000, "nest"),
         ("lower_streak:=" + "9" * 5000, "allowed is a whole number"),
         ("amcl:lower_streak:=3", "for the node /amcl"),
-        ("measurement_model:=polar", "`measurement_model` is no longer there: bearing and range"),
+        ("measurement_model:=polar", "`measurement_model` is no longer there: measurements"),
     ],
 )
 def test_a_wrong_assignment_is_one_line_and_status_2(run, assignment, named):
@@ -155,8 +155,8 @@ def test_a_parameter_file_of_an_earlier_version_costs_one_line(run, tmp_path, mo
     [line] = set(error.splitlines()) - set(usual_error.splitlines())
     assert error.count(line) == 1
     assert line.startswith("note: old.yaml: ")
-    assert "`appearance_weight` (the colors" in line
-    assert "`measurement_model` (bearing" in line
+    assert "`appearance_weight` (comparing" in line
+    assert "`measurement_model` (measurements" in line
 
 
 @pytest.mark.model
@@ -225,7 +225,7 @@ def test_monte_carlo_goes_on_in_its_folder_and_refuses_another_study_s(run, tmp_
     assert (tmp_path / "study/trials.parquet").exists()
     status, _, error = run(*words, "-n", 30, "--seed", 2)
     assert status == 2
-    assert "seed is 1 there, 2 here" in complaint(error)
+    assert "seed is 1 in the folder and 2 now" in complaint(error)
 
 
 def test_monte_carlo_takes_parameters(run):
@@ -242,7 +242,7 @@ def test_monte_carlo_takes_parameters(run):
         (("people", "-p", "gate_probability:=2.0"), "gate_probability"),
         (("outliers", "--paths", "x.csv"), "--paths"),
         (("people", "-n", 1, "--paths", "nowhere.csv"), "nowhere.csv"),
-        (("people", "--executor", "threads"), "needed is processes, or an address"),
+        (("people", "--executor", "threads"), "expected processes, or an address"),
         (("people", "--format", "parquet"), "--out FOLDER"),
     ],
 )
@@ -283,10 +283,10 @@ def test_zero_sized_images_are_one_line_and_status_1(run, tmp_path, model_store)
 @pytest.mark.parametrize(
     ("words", "status", "expected"),
     [
-        (("evaluate", "--distances", "near"), 2, "--distances is 'near'; needed are meters"),
-        (("evaluate", "--distances", "0.1,2"), 2, "The distances are 0.1, 2; needed"),
+        (("evaluate", "--distances", "near"), 2, "--distances is 'near'; expected meters"),
+        (("evaluate", "--distances", "0.1,2"), 2, "The distances are 0.1, 2; expected"),
         (("evaluate", "-n", 0, "--minutes-of-nobody", 0), 2, "0 episodes and 0 minutes"),
-        (("evaluate", "nowhere"), 1, "labels.csv: is not there; write one"),
+        (("evaluate", "nowhere"), 1, "labels.csv: does not exist; write one"),
     ],
 )
 def test_an_evaluation_that_cannot_be_is_one_line(run, words, status, expected):

@@ -65,5 +65,5 @@ def test_an_output_in_the_place_of_an_input_is_refused_before_the_work(run, thin
     before = things()
     status, _, error = run(*words.split())
     assert status == 2
-    assert "another place" in error
+    assert "choose another" in error
     assert things() == before

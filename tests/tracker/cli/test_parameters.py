@@ -27,7 +27,7 @@ def test_all_parameters_are_shown_the_basic_ones_first(run):
 def test_a_parameter_is_shown_with_default_range_unit_and_meaning(run):
     _, output, error = run("parameters", "transform_wait_s")
     assert output.splitlines()[2] == "  transform_wait_s: 0.3"
-    assert "How long an image may wait" in output
+    assert "An image waits this long" in output
     assert "at most 5 (s); may change while the node runs" in " ".join(output.split())
     assert error == ""
 

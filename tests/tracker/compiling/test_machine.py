@@ -139,7 +139,7 @@ def test_where_no_process_can_be_started_python_goes_on(
     machine.start()
     wait_for_the_compiler()
     assert machine.code is None
-    assert "No compiler can be started" in caplog.text
+    assert "The compiler cannot be started" in caplog.text
 
 
 def test_without_a_place_for_passing_files_what_is_kept_is_compiled_all_the_same(
@@ -161,7 +161,7 @@ def test_where_nothing_can_be_written_at_all_python_goes_on(
     machine.start()
     wait_for_the_compiler()
     assert machine.code is None
-    assert "No compiler can be started" in caplog.text
+    assert "The compiler cannot be started" in caplog.text
 
 
 def program(module, folder, build, then=""):

@@ -321,7 +321,7 @@ def test_cartesian_claims_take_one_point_or_many():
     ],
 )
 def test_a_column_of_another_length_is_refused_by_name(arguments, name):
-    with pytest.raises(ShapeError, match=rf"`{name}` has shape .* needed is \(2,"):
+    with pytest.raises(ShapeError, match=rf"`{name}` has shape .* expected \(2,"):
         Measurements.polar(*arguments)
 
 

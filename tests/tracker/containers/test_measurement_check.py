@@ -78,7 +78,7 @@ def test_a_row_that_no_tracker_can_use_is_refused_by_its_number(changes, words):
     message = str(caught.value)
     assert message.startswith("Row 1 of 3 measurements has ")
     assert words in message
-    assert "needed: " in message
+    assert "expected: " in message
 
 
 @pytest.mark.parametrize("changes", [case[0] for case in BAD_ROWS.values()], ids=BAD_ROWS)
@@ -102,7 +102,7 @@ def test_such_a_row_is_left_out_on_request(changes):
 def test_a_covariance_that_is_none_is_refused(covariance):
     noise = np.tile(np.eye(2), (3, 1, 1))
     noise[2] = covariance
-    with pytest.raises(MeasurementError, match=r"Row 2 of 3 .* the covariance .* needed: a symm"):
+    with pytest.raises(MeasurementError, match=r"Row 2 of 3 .* the covariance .* expected: a sym"):
         Measurements.cartesian(np.ones((3, 2)), noise)
     assert len(Measurements.cartesian(np.ones((3, 2)), noise, refuse="drop")) == 2
 
@@ -142,11 +142,11 @@ def test_a_sensor_whose_place_is_uncertain_is_fine():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"kind": [0, 2, 7]}, "Row 2 .* kind 7; needed: a SensorKind"),
+        ({"kind": [0, 2, 7]}, "Row 2 .* kind 7; expected: a SensorKind"),
         ({"kind": [0, 2, -1]}, "Row 2 .* kind -1"),
         ({"kind": [0, 0, 0]}, "Row 1 .* the range nan m"),
-        ({"kind": [2, 2, 0]}, "Row 0 .* kind BEARING; needed: NaN"),
-        ({"covariance": np.tile(0.01 * np.eye(2), (3, 1, 1))}, "Row 1 .* needed: .* 1 and no"),
+        ({"kind": [2, 2, 0]}, "Row 0 .* kind BEARING; expected: NaN"),
+        ({"covariance": np.tile(0.01 * np.eye(2), (3, 1, 1))}, "Row 1 .* expected: .* 1 and no"),
         ({"covariance": np.full((3, 2, 2), 0.5) + 0.5 * np.eye(2)}, "Row 1 .* the covariance"),
     ],
     ids=["unknown", "negative", "a range without", "a bearing with", "noise of nothing", "mixed"],
@@ -166,7 +166,7 @@ def test_rows_chosen_and_joined_are_the_same_rows():
 @pytest.mark.parametrize("name", ["bearing_rad", "range_m", "range_std_m", "sensor_pose", "hand"])
 def test_what_is_no_number_is_refused_by_name(name, junk):
     columns = {"bearing_rad": [0.1], "range_m": 2.0, "bearing_std_rad": 0.02, "range_std_m": 0.1}
-    with pytest.raises(ShapeError, match=f"`{name}` is .*; needed is an array of numbers"):
+    with pytest.raises(ShapeError, match=f"`{name}` is .*; expected an array of numbers"):
         Measurements.polar(**(columns | {name: junk}))
 
 

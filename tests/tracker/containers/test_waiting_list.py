@@ -22,7 +22,7 @@ def test_a_kept_list_comes_back_with_nobody_in_sight():
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"stamp_ns": 1, "callers": [{}]}', "null"])
 def test_what_is_no_kept_list_is_refused(text):
-    with pytest.raises(RecordingError, match="no waiting list"):
+    with pytest.raises(RecordingError, match="not a waiting list"):
         WaitingList.from_json(text)
 
 

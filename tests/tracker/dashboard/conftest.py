@@ -14,7 +14,9 @@ START_NS, PERIOD_NS = 10**12, 100_000_000
 
 
 class OneHand:
-    def find(self, image):
+    work = None
+
+    def find(self, image, hints=None):
         landmarks = np.full((1, 21, 2), (320.0, 240.0))
         landmarks[:, 12, 1] -= 60.0
         one = np.ones(1)

@@ -72,7 +72,7 @@ def test_buttons_and_sliders_are_followed_before_the_next_frame(watched):
     assert watched.pipeline.config.selection == "nearest"
     assert state["said"][0] == "customer 1 is being served"
     assert "`pose_max_age_s` is -1" in state["said"][2]
-    assert "is no command" in state["said"][3]
+    assert "is not a command" in state["said"][3]
 
 
 def test_a_page_that_only_shows_changes_nothing(make_watched):
@@ -104,7 +104,7 @@ def test_every_live_parameter_is_described_and_fixed_ones_cannot_change():
     assert described["processing_rate"]["max"] == 240.0
     assert described["selection"]["choices"] == ["first", "nearest", "newest"]
     assert "model_complexity" not in described
-    with pytest.raises(ConfigError, match="fixed while it runs"):
+    with pytest.raises(ConfigError, match="cannot change now"):
         changed(Config(), "model_complexity", 1)
     with pytest.raises(ConfigError, match="unknown parameter"):
         changed(Config(), "nonsense", 1)

@@ -96,7 +96,7 @@ def test_a_damaged_png_is_told_when_it_is_read():
     assert came.stamp_ns == 5
     damaged = types.deserialize(*sent)
     damaged.data = damaged.data[:60]
-    with pytest.raises(RecordingError, match="cannot be unpacked"):
+    with pytest.raises(RecordingError, match="cannot be decompressed"):
         depth_from_compressed(damaged, MAX_PIXELS)()
 
 

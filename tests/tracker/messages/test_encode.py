@@ -188,9 +188,8 @@ def test_intrinsics_come_back_exactly(camera):
 def test_a_camera_without_distortion_gets_a_name_that_tools_know():
     info = CameraInfo(0, "camera", 640, 480, CameraModel(460.0, 460.0, 320.0, 240.0))
     assert deserialize(*encode(info)).distortion_model == "plumb_bob"
-    pixels = np.array([[10.0, 20.0]])
     (back,) = decode(*encode(info))
-    np.testing.assert_array_equal(back.undistort(pixels), pixels)
+    assert not any(back.distortion)
 
 
 def test_a_map_comes_back_exactly_but_for_its_resolution_in_single_precision():

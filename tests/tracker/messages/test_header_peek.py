@@ -44,5 +44,5 @@ def test_memoryviews_serve_as_well():
 
 
 def test_a_name_that_goes_beyond_the_bytes_is_refused():
-    with pytest.raises(RecordingError, match="frame_id of 900 bytes"):
+    with pytest.raises(RecordingError, match="frame_id should have 900 bytes"):
         peek_header(b"\0\1\0\0" + struct.pack("<iII", 1, 1, 900) + b"cam\0")

@@ -48,7 +48,7 @@ def test_a_link_stays_one_and_the_file_behind_it_is_replaced(tmp_path):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device here")
 def test_a_full_disk_is_told_with_what_helps(tmp_path):
     os.symlink("/dev/full", tmp_path / "full.txt")
-    with pytest.raises(OutputError, match="make room on the disk"), writing_into(tmp_path) as new:
+    with pytest.raises(OutputError, match="free some space"), writing_into(tmp_path) as new:
         new("full.txt").write_text("more than fits")
     assert Path("/dev/full").is_char_device()
 

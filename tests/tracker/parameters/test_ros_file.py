@@ -58,7 +58,7 @@ def test_sections_that_fit_a_namespaced_node(parameters, names):
     ids="/".join,
 )
 def test_sections_that_do_not_fit_are_named(parameters, names):
-    with pytest.raises(ConfigError, match=r"names the nodes /.*needed is `/cafe/hand_detector:`"):
+    with pytest.raises(ConfigError, match=r"names the nodes /.*expected `/cafe/hand_detector:`"):
         parameters(section(*names), "/cafe/hand_detector")
 
 
@@ -75,7 +75,7 @@ def test_without_a_namespace_the_one_node_of_the_file_is_meant(parameters):
     text = section("/**", value=1) + section("/cafe/hand_detector", value=2)
     assert parameters(text) == {"speed": 2}
     assert parameters(text + section("hand_detector", value=3)) == {"speed": 3}
-    with pytest.raises(ConfigError, match="/bar/hand_detector and /cafe/hand_detector, and only"):
+    with pytest.raises(ConfigError, match="/bar/hand_detector and /cafe/hand_detector, but only"):
         parameters(text + section("/bar/hand_detector"))
 
 
@@ -102,14 +102,14 @@ def test_assignments_as_ros_writes_them(text, node, expected):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("speed", "needed is NAME:=VALUE"),
-        ("speed:=", "needed is NAME:=VALUE"),
-        (":=3", "needed is NAME:=VALUE"),
-        (":speed:=3", "needed is NAME:=VALUE"),
+        ("speed", "expected NAME:=VALUE"),
+        ("speed:=", "expected NAME:=VALUE"),
+        (":=3", "expected NAME:=VALUE"),
+        (":speed:=3", "expected NAME:=VALUE"),
         ("amcl:speed:=3", "for the node /amcl; this one is /cafe/hand_detector"),
         ("hand_detector:speed:=3", "for the node /hand_detector; this one is"),
-        ("speed:=[", "is no YAML"),
-        ("speed:=*b", "stands for nothing"),
+        ("speed:=[", "is not YAML"),
+        ("speed:=*b", "is not defined"),
     ],
 )
 def test_an_assignment_that_is_none_is_one_line(text, words):

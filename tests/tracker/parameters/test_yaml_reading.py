@@ -72,7 +72,7 @@ def test_aliases_that_multiply_are_refused():
 
 @pytest.mark.parametrize("text", ["*a", "&a [*a]"], ids=["unknown", "itself"])
 def test_an_alias_of_nothing_is_refused(text):
-    with pytest.raises(ConfigError, match=r"names `\*a`, which stands for nothing"):
+    with pytest.raises(ConfigError, match=r"names `\*a`, which is not defined"):
         parse_yaml(text, "x")
 
 

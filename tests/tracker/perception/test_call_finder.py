@@ -9,6 +9,7 @@ from tracker.perception import HandDetector
 from tracker.perception.bodies.bodies import Bodies
 from tracker.perception.bodies.people_watch import PeopleWatch
 from tracker.perception.call_finder import CallFinder
+from tracker.perception.detector import Hints
 
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
 PHONING = {"right_elbow": (165, 120), "right_wrist": (183, 78)}
@@ -23,9 +24,11 @@ class Told:
 
     def __init__(self, answer):
         self.answer = answer
-        self.calls, self.suggested, self.spared = [], [], []
+        self.calls, self.suggested = [], []
 
-    def find(self, image):
+    def find(self, image, hints):
+        self.hints = hints
+        self.suggested.append(hints.suggested_px)
         return self.answer
 
     def reset(self):
@@ -33,18 +36,6 @@ class Told:
 
     def configure(self, config):
         self.calls.append(config)
-
-    def expect(self, boxes_px):
-        self.expected_px = boxes_px
-
-    def set_budget(self, runs):
-        self.runs = runs
-
-    def suggest(self, landmarks_px):
-        self.suggested.append(landmarks_px)
-
-    def spare(self, places):
-        self.spared.append(places)
 
 
 class Look:
@@ -171,12 +162,11 @@ def test_an_arm_without_a_hand_is_suggested_to_the_hands_models(body):
 def test_it_passes_on_what_it_is_told(upright_hand):
     hands = Told(upright_hand((148, 70)))
     finder = CallFinder(hands, None, Config())
-    finder.expect(np.array([[1.0, 2.0, 3.0, 4.0]]))
-    finder.set_budget(3)
+    finder.find(image(0), Hints(np.array([[1.0, 2.0, 3.0, 4.0]]), 3))
     finder.reset()
     finder.configure(Config(max_hands=2))
-    assert hands.expected_px.tolist() == [[1.0, 2.0, 3.0, 4.0]]
-    assert (hands.runs, hands.calls) == (3, ["reset", Config(max_hands=2)])
+    assert hands.hints.expected_px.tolist() == [[1.0, 2.0, 3.0, 4.0]]
+    assert (hands.hints.model_runs, hands.calls) == (3, ["reset", Config(max_hands=2)])
     assert finder.work.places == 2
     assert isinstance(finder, HandDetector)
 

@@ -17,7 +17,7 @@ def test_a_scanner_that_serves_every_image_needs_no_reason():
 
 def test_the_most_frequent_reason_is_told_in_its_first_words_with_the_remedy():
     use = ScanUse()
-    use.add(image_with((NoteKind.NO_SCAN, "no scan has come")))
+    use.add(image_with((NoteKind.NO_SCAN, "no scan was received")))
     for number in range(3):
         use.add(image_with((NoteKind.SCAN_TOO_OLD, f"the nearest is 0.{number + 4} s later")))
     use.add(image_with())

@@ -84,8 +84,8 @@ def test_pictures_of_16_bits_and_colors_are_read_by_their_brightness(write_map):
         ("0.196", "0.7", ["free_thresh is 0.7", "below occupied_thresh, which is 0.65"]),
         ("negate: 0", "mode: gray", ["`mode` is 'gray'", "'trinary', 'scale' or 'raw'"]),
         ("room.pgm", "hall.pgm", ["hall.pgm", "cannot be read"]),
-        ("room.pgm", "map.yaml", ["map.yaml", "no picture", "PGM, PNG or BMP"]),
-        (PLAIN, "- 1\n", ["holds no map", "`resolution:`"]),
+        ("room.pgm", "map.yaml", ["map.yaml", "not a picture", "PGM, PNG or BMP"]),
+        (PLAIN, "- 1\n", ["contains no map", "`resolution:`"]),
     ],
     ids=lambda value: value if isinstance(value, str) and len(value) < 20 else None,
 )

@@ -10,17 +10,17 @@ from tracker.recording import open_recording
     ("name", "content", "words"),
     [
         ("missing.mcap", None, "no such file"),
-        ("notes.txt", b"hello", "no known kind; known are .avi"),
+        ("notes.txt", b"hello", "no supported format; supported are .avi"),
         ("drive", None, "no such file"),
         ("empty.mcap", b"", "seems to be empty"),
         ("empty.db3", b"", "rosbag2 database"),
         ("empty.bag", b"", "rosbag reindex"),
-        ("empty.mp4", b"", "OpenCV finds no video"),
+        ("empty.mp4", b"", "OpenCV cannot read a video"),
         ("empty.jpg", b"", "not one photo"),
         ("text.mcap", b"not an mcap file at all, but long enough" * 9, "cannot be read"),
         ("text.db3", b"not a database at all, but long enough" * 99, "sqlite3 old.db3"),
         ("text.bag", b"not a bag at all, but long enough" * 99, "rosbag reindex"),
-        ("text.mp4", b"not a video at all, but long enough" * 99, "OpenCV finds no video"),
+        ("text.mp4", b"not a video at all, but long enough" * 99, "OpenCV cannot read a video"),
     ],
 )
 def test_what_is_no_recording_is_refused_in_one_line_with_its_name(tmp_path, name, content, words):

@@ -190,7 +190,7 @@ def test_an_unreadable_photo_is_counted_and_named(tmp_path):
         (line,) = recording.skipped_lines()
     assert stamps == [0, 200_000_000]
     assert "b.png" in line
-    assert "1 not usable" in line
+    assert "1 unusable" in line
 
 
 def test_only_unreadable_photos_are_an_error(tmp_path):

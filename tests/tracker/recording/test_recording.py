@@ -194,7 +194,7 @@ def test_missing_images_are_explained_with_the_topics_there_are(tmp_path, sensor
         assert not recording.has_images
         with pytest.raises(RecordingError) as caught:
             recording.require_images()
-        assert "no images on /image_raw; the recording holds /camera_info" in str(caught.value)
+        assert "no images on /image_raw; the recording contains /camera_info" in str(caught.value)
         assert "--image-topic /front/image" in str(caught.value)
         assert "CameraImage" not in kinds(recording.events())
     with open_recording(tmp_path / "front.mcap", Topics(image="/front/image")) as recording:
@@ -247,7 +247,7 @@ def test_broken_messages_are_counted_and_the_first_is_told(tmp_path, sensor_item
             assert counts["CameraImage"] == 20
             assert recording.skipped["/image_raw"].count == 3
         camera, image = recording.skipped_lines()
-    assert image.startswith("/image_raw: 3 not usable, the first at 1.000 s: An image says 4x4")
+    assert image.startswith("/image_raw: 3 unusable messages, the first: at 1.000 s: An image")
     assert "uncalibrated" in camera
 
 
@@ -303,4 +303,4 @@ def test_a_stamp_beyond_what_ros_can_say_is_counted_and_the_rest_is_read(
     write_mcap(tmp_path / "a.mcap", [*items, (topic, late_ns, serialize(message))])
     with open_recording(tmp_path / "a.mcap", stamps=stamps) as recording:
         assert kinds(recording.events())["Scan"] == 5
-        assert "beyond what ROS can say" in recording.skipped["/scan"].first
+        assert "after 2038" in recording.skipped["/scan"].first

@@ -171,7 +171,7 @@ def test_a_place_that_cannot_be_written_is_named(tmp_path):
         (tmp_path / "full.mcap").symlink_to("/dev/full")
         writer = RecordingWriter(tmp_path / "full.mcap", overwrite=True)
         writer.write("/hand_raised", 5, True)
-        with pytest.raises(RecordingError, match="room on the disk"):
+        with pytest.raises(RecordingError, match="space on the disk"):
             writer.close()
 
 

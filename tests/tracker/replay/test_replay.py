@@ -357,7 +357,7 @@ def test_a_source_is_never_written_over(tmp_path, write_bag, hand_ahead):
     (tmp_path / "out/output.mcap").hardlink_to(bag)
     before = bag.read_bytes()
     for source in (bag, tmp_path / "out/output.mcap", tmp_path / "out"):
-        with pytest.raises(ConfigError, match="name another place"):
+        with pytest.raises(ConfigError, match="choose another"):
             replay(source, tmp_path / "out", detector=hand_ahead)
     assert bag.read_bytes() == before
 
@@ -366,7 +366,7 @@ def test_two_replays_never_write_into_one_folder(tmp_path, write_bag, hand_ahead
     bag = write_bag(tmp_path / "in.mcap")
     with (
         FolderLock(tmp_path / "out"),
-        pytest.raises(ConfigError, match="another command writes there"),
+        pytest.raises(ConfigError, match="another command is writing there"),
     ):
         replay(bag, tmp_path / "out", detector=hand_ahead)
 

@@ -43,7 +43,7 @@ def page():
     parts = (Text((NASTY,)), Facts(((NASTY, NASTY, NASTY),)), table, a_plot(), a_plot("png"))
     sections = (
         Section(NASTY, (*parts, Gallery((photo,)))),
-        Section("Folded", (Text(("inside",)),), is_folded=True),
+        Section("More", (Text(("inside",)),)),
         Section("Empty", ()),
     )
     return Page(NASTY, NASTY, sections)
@@ -79,10 +79,9 @@ def test_plots_are_svg_or_png_and_photos_are_jpeg_of_bounded_width(page):
     assert cv2.imdecode(np.frombuffer(photo.data, np.uint8), 1).shape == (480, 640, 3)
 
 
-def test_a_section_without_parts_is_left_out_and_a_folded_one_can_be_opened(page):
+def test_a_section_without_parts_is_left_out(page):
     parsed = Parsed(page.html())
     assert [link["href"] for link in parsed.all("a")] == ["#part-1", "#part-2"]
-    assert len(parsed.all("details")) == 1
     assert "Empty" not in "".join(parsed.words)
 
 

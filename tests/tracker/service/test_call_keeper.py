@@ -189,7 +189,7 @@ def test_who_is_told_to_wait_comes_after_the_others(room):
     room.run(1, people, up=[1, 2])
     room.say("serve 1")
     room.run(1, people)
-    assert room.say("wait 1").text == "customer 1 waits, behind the others"
+    assert room.say("wait 1").text == "customer 1 waits behind the others"
     assert room.keeper.now.selected_id == 2
     assert list(room.states) == [2, 1]
 

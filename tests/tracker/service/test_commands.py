@@ -17,11 +17,11 @@ def test_release_and_clear_need_no_number():
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("", "is no command"),
-        ("fetch 3", "there are serve, served, wait, release, ignore, clear"),
+        ("", "is not a command"),
+        ("fetch 3", "commands are serve, served, wait, release, ignore, clear"),
         ("serve", "needs a customer's number, as `serve 3`"),
-        ("serve three", "'three' is no customer's number"),
-        ("serve -1", "is no customer's number"),
+        ("serve three", "'three' is not a customer's number"),
+        ("serve -1", "is not a customer's number"),
         ("serve 1 2", "too many words"),
         ("clear 1", "too many words"),
     ],

@@ -114,9 +114,9 @@ def test_a_missing_key_is_named(room):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"a: [1\nb: 2\n", "is no YAML at line 2"),
-        (b"- 1\n", "holds no scene"),
-        (b"\xff\xfe\x00", "is no "),
+        (b"a: [1\nb: 2\n", "is not YAML at line 2"),
+        (b"- 1\n", "contains no scene"),
+        (b"\xff\xfe\x00", "is not UTF-8"),
         (b"duration_s: 2024-99-99\n", "`duration_s` is '2024-99-99'"),
     ],
     ids=["syntax", "list", "binary", "date"],

@@ -11,7 +11,7 @@ import pytest
 from tracker.wording import one_line
 
 FULL = "/dev/full"
-STOPPED = "raised-hand: stopped; what was written until now can be read."
+STOPPED = "raised-hand: stopped; the files written so far can be read."
 
 
 def run(*words, **options):
@@ -55,7 +55,7 @@ def test_letters_that_the_output_does_not_have_are_written_out():
     ids=" ".join,
 )
 def test_names_that_cannot_be_are_found_before_the_work(words, tmp_path):
-    for name, reason in ((b"caf\xe9.mcap", "is no UTF-8 text"), (b"x" * 4500, "name too long")):
+    for name, reason in ((b"caf\xe9.mcap", "is not UTF-8 text"), (b"x" * 4500, "name too long")):
         ended = run(*(word.encode().replace(b"{}", name) for word in words), cwd=tmp_path)
         assert ended.returncode == 2
         line = last_line(ended)

@@ -121,7 +121,7 @@ def read_clips(folder: str | Path) -> tuple[LabeledClip, ...]:
     with path.open(newline="", encoding="utf-8-sig") as file:
         reader = csv.DictReader(file, skipinitialspace=True, restval="")
         if not {"clip", "start_s", "end_s"} <= set(reader.fieldnames or ()):
-            raise RecordingError(f"{path}: line 1: needed are the columns clip,start_s,end_s.")
+            raise RecordingError(f"{path}: line 1: expected the columns clip,start_s,end_s.")
         for row in reader:
             where = f"{path}: line {reader.line_num}"
             clip = path.parent / row["clip"]
@@ -229,10 +229,8 @@ def _span(start: str, end: str, where: str) -> tuple[float, float]:
         start_s, end_s = float(start), float(end)
     except ValueError as error:
         raise RecordingError(
-            f"{where}: start_s, end_s are {start!r}, {end!r}; needed are seconds, or neither."
+            f"{where}: start_s, end_s are {start!r}, {end!r}; expected seconds, or neither."
         ) from error
     if not 0.0 <= start_s < end_s < np.inf:
-        raise RecordingError(
-            f"{where}: start_s, end_s are {start_s:g}, {end_s:g}; turn them round."
-        )
+        raise RecordingError(f"{where}: start_s, end_s are {start_s:g}, {end_s:g}; swap them.")
     return start_s, end_s

@@ -1,4 +1,4 @@
-"""Was this raised hand found, how soon, how exactly, and what was invented? One scene, judged.
+"""Was this raised hand found, how soon, and how exactly? Were others invented? For one scene.
 
 The scene is rendered and goes through the whole pipeline without LiDAR, so that tracks have a
 bearing and no range worth comparing: truth and tracks are compared by bearing, in the camera.

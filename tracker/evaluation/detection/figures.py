@@ -1,4 +1,4 @@
-"""What do a detection study's episodes and minutes add up to? Shares and rates with intervals."""
+"""Recall and false raises of a detection study, with their intervals."""
 
 from __future__ import annotations
 

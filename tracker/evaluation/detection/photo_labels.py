@@ -99,10 +99,10 @@ def read_labels(folder: str | Path) -> tuple[LabeledPhoto, ...]:
         if hands and name in empty:
             raise RecordingError(
                 f"{where}: {name} has raised hands, but line {empty[name]} or this one says "
-                "raised 0; leave that one out."
+                "raised 0; remove one of them."
             )
     if not wrists:
-        raise RecordingError(f"{path}: holds no labels; a line like `photo.jpg,1` is needed.")
+        raise RecordingError(f"{path}: contains no labels; add a line like `photo.jpg,1`.")
     return tuple(
         LabeledPhoto(path.parent / name, np.array(hands, dtype=np.float64).reshape(-1, 2))
         for name, hands in wrists.items()
@@ -134,7 +134,7 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
             names = [name.strip() for name in reader.fieldnames or ()]
             if not {"file", "raised"} <= set(names) <= set(_COLUMNS):
                 raise RecordingError(
-                    f"{path}: line 1: the columns are {', '.join(names) or 'none'}; needed are "
+                    f"{path}: line 1: the columns are {', '.join(names) or 'none'}; expected "
                     "file,raised or file,raised,x,y."
                 )
             reader.fieldnames = names
@@ -147,18 +147,18 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
                 yield reader.line_num, row
     except FileNotFoundError as error:
         raise RecordingError(
-            f"{path}: is not there; write one with the columns file,raised or file,raised,x,y."
+            f"{path}: does not exist; write one with the columns file,raised or file,raised,x,y."
         ) from error
     except OSError as error:
         raise RecordingError(f"{path}: cannot be read ({error.strerror}).") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise RecordingError(f"{path}: is no CSV file in UTF-8 ({error}).") from error
+        raise RecordingError(f"{path}: is not a CSV file in UTF-8 ({error}).") from error
 
 
 def _is_raised(row: dict[str, str], where: str) -> bool:
     text = row["raised"].strip().lower()
     if text not in _YES | _NO:
-        raise RecordingError(f"{where}: raised is {row['raised']!r}; needed is 1 or 0.")
+        raise RecordingError(f"{where}: raised is {row['raised']!r}; expected 1 or 0.")
     return text in _YES
 
 
@@ -170,8 +170,8 @@ def _wrist(row: dict[str, str], where: str) -> tuple[float, float]:
         x, y = (float(text) for text in texts)
     except ValueError as error:
         raise RecordingError(
-            f"{where}: x, y are {texts[0]!r}, {texts[1]!r}; needed is a pixel, or neither."
+            f"{where}: x, y are {texts[0]!r}, {texts[1]!r}; expected a pixel, or neither."
         ) from error
     if not (0.0 <= x < np.inf and 0.0 <= y < np.inf):
-        raise RecordingError(f"{where}: x, y are {x:g}, {y:g}; needed is a pixel of the photo.")
+        raise RecordingError(f"{where}: x, y are {x:g}, {y:g}; expected a pixel of the photo.")
     return x, y

@@ -127,7 +127,7 @@ def study_photos(
     looks: int = 25,
     progress: Callable[[float, int], None] = lambda share, images: None,
 ) -> PhotoStudy:
-    """Judge each photo on its own, as a camera that stands before it would see it.
+    """Judge each photo on its own, as if a camera looked at the scene.
 
     Args:
         photos: With their labels.

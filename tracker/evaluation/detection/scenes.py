@@ -1,4 +1,4 @@
-"""Whom and what does a detector meet? Scenes drawn at random, balanced over what may matter.
+"""The scenes of a detection study: drawn at random, balanced over everything that may matter.
 
 Callers raise a hand at a known time; idlers talk, drink, phone, scratch their heads, rest their
 hands or wave them low, and never call.
@@ -149,7 +149,8 @@ def caller_scene(
         if is_in_view(scene, HAND_UP_S):
             return scene
     raise SceneError(
-        f"At {conditions.distance_m:g} m no raised hand fits into the picture; farther is needed."
+        f"At {conditions.distance_m:g} m no raised hand fits into the picture; choose a larger "
+        "distance."
     )
 
 

@@ -210,10 +210,10 @@ def _check(episodes: int, minutes: int, seed: int, distances_m: Sequence[float])
     if episodes < 0 or minutes < 0 or seed < 0 or episodes + minutes == 0:
         raise ConfigError(
             f"{episodes} episodes and {minutes} minutes of seed {seed} were asked for; "
-            "needed are whole numbers from 0, and an episode or a minute."
+            "expected whole numbers from 0, and at least one episode or minute."
         )
     if not distances_m or not all(0.5 <= distance_m <= 20.0 for distance_m in distances_m):
         raise ConfigError(
             f"The distances are {', '.join(f'{item:g}' for item in distances_m) or 'none'}; "
-            "needed are meters from 0.5 to 20."
+            "expected meters from 0.5 to 20."
         )

@@ -1,4 +1,4 @@
-"""Is the tracker as wrong as it says? Normalized errors squared, and the bounds they keep to."""
+"""Does the covariance match the error? NEES and NIS, and the bounds of their means."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from tracker.evaluation.metrics.constant_velocity import process_noise, transiti
 def polar_information(
     xy_m: FloatArray, sensor_xy_m: FloatArray, bearing_std_rad: float, range_std_m: float
 ) -> FloatArray:
-    """What one measurement of bearing and range tells about x and y: H' inv(R) H.
+    """Information about x and y in one measurement of bearing and range: H' inv(R) H.
 
     Args:
         xy_m: Shape (..., 2), where the person is.

@@ -1,4 +1,4 @@
-"""Who was where at each frame of a trial, and whom did the tracker believe where?"""
+"""True and estimated positions of everybody at each frame of a trial."""
 
 from __future__ import annotations
 

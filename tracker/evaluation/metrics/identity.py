@@ -1,4 +1,4 @@
-"""Does everybody keep one identity, and does every identity keep to one person?
+"""Does each person keep one identity, and does each identity stay with one person?
 
 Both questions are asked of the pairs of a whole run: row i of `person` and `track` is one pair of
 one frame (from `matching.Matcher`), rows in order of time.

@@ -5,22 +5,23 @@ innovation y = z - h(x),    S = H P H' + R,    NIS = y' inv(S) y.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from scipy.special import gammaln
 
 from tracker.containers import BoolArray, FloatArray, IntArray
+from tracker.containers.rows import Column, Rows
 from tracker.evaluation.metrics.rounds import Round
 from tracker.tracking.prediction.modes import merge_modes
 from tracker.tracking.sensing.innovation import innovation_of, noise_of, seen_from
 from tracker.tracking.sensing.sensor_kinds import BEARING, POSITION, RANGE
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Innovations:
-    """K measurements, each held against the person whom it was assigned to.
+@dataclass(frozen=True, eq=False)
+class Innovations(Rows):
+    """Innovations of K measurements, each with the person to whom it was assigned.
 
     Attributes:
         stamp_ns: Shape (K,).
@@ -37,28 +38,12 @@ class Innovations:
 
     stamp_ns: IntArray
     id: IntArray
-    innovation: FloatArray
-    covariance: FloatArray
+    innovation: Annotated[FloatArray, Column((2,))]
+    covariance: Annotated[FloatArray, Column((2, 2))]
     ranged: BoolArray
     raised: BoolArray
     log_likelihood: FloatArray
     nis: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.stamp_ns)
-
-    def __getitem__(self, rows: BoolArray | IntArray | slice) -> Innovations:
-        return Innovations(*(getattr(self, name)[rows] for name in self.__slots__))
-
-    @staticmethod
-    def concatenate(parts: Sequence[Innovations]) -> Innovations:
-        """One batch of one or more, in order."""
-        return Innovations(
-            *(
-                np.concatenate([getattr(part, name) for part in parts])
-                for name in Innovations.__slots__
-            )
-        )
 
 
 def innovations_of(round_: Round) -> Innovations:

@@ -1,4 +1,4 @@
-"""How sure is a share, or a rate, after so many trials? Intervals of 95 %."""
+"""How well is a share or a rate known after this many trials? 95 % intervals."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _TAIL = 0.025
 
 
 def wilson_interval(count: float, total: float) -> tuple[float, float]:
-    """Wilson's interval of a share; also right where the count is nothing or all.
+    """Wilson's interval of a share; valid also if the count is none or all.
 
     Args:
         count: How many of the trials.
@@ -29,7 +29,7 @@ def wilson_interval(count: float, total: float) -> tuple[float, float]:
 
 
 def poisson_interval(count: int, exposure: float) -> tuple[float, float]:
-    """Garwood's exact interval of a rate; its upper end says what no event at all still allows.
+    """Garwood's exact interval of a rate; with no event, its upper end is still above 0.
 
     Args:
         count: Events.

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from numpy.typing import ArrayLike
 
@@ -113,19 +114,12 @@ class _Steps(PersonTracker):
         *,
         view: View | None = None,
         scan_view: View | None = None,
-        camera_looked: bool = True,
-        likeness: ArrayLike | None = None,
+        **more: Any,
     ) -> Tracks:
         x_m, y_m = map(float, robot_xy_m)  # type: ignore[arg-type]  # the pipeline gives an array
         step = Step(stamp_ns, measurements, (x_m, y_m), view, scan_view, self._is_anew)
         self.taken.append(step)
         self._is_anew = False
         return super().step(
-            stamp_ns,
-            measurements,
-            robot_xy_m,
-            view=view,
-            scan_view=scan_view,
-            camera_looked=camera_looked,
-            likeness=likeness,
+            stamp_ns, measurements, robot_xy_m, view=view, scan_view=scan_view, **more
         )

@@ -43,7 +43,7 @@ def dask_cluster(address: str, *, patience_s: float = 30.0) -> Iterator[Executor
     try:  # before there is a client, whose remains may block the next one
         get_address_host_port(place, strict=True)
     except ValueError as error:
-        raise ConfigError(f"{address} is no address of a Dask scheduler ({error}).") from error
+        raise ConfigError(f"{address} is not an address of a Dask scheduler ({error}).") from error
     try:
         client = Client(place, timeout=patience_s)
     except (OSError, TimeoutError) as error:
@@ -58,7 +58,8 @@ def dask_cluster(address: str, *, patience_s: float = 30.0) -> Iterator[Executor
             raise WorkerError(f"{address}: workers die again and again ({error}).") from error
         except CancelledError as error:
             raise WorkerError(
-                f"{address}: the scheduler has gone away; with --out, the same command goes on."
+                f"{address}: the scheduler stopped; with --out, give the same command again to "
+                "continue."
             ) from error
 
 
@@ -68,11 +69,11 @@ def _check_workers(client: Client, address: str, patience_s: float) -> None:
         client.wait_for_workers(1, timeout=patience_s)
         found = set(client.run(version, _PACKAGE).values())
     except TimeoutError as error:
-        raise WorkerError(f"{address}: has no workers; start some: `dask worker`.") from error
+        raise WorkerError(f"{address}: has no workers; start some with `dask worker`.") from error
     except ModuleNotFoundError as error:
         raise WorkerError(f"{address}: its workers have no {_PACKAGE}; install it.") from error
     if found != {version(_PACKAGE)}:
         raise WorkerError(
             f"{address}: its workers have {_PACKAGE} {', '.join(sorted(found))}; "
-            f"needed is {version(_PACKAGE)}, as here."
+            f"expected {version(_PACKAGE)}, as here."
         )

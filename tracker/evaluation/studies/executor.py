@@ -1,4 +1,4 @@
-"""Who does the work of a long command? Several processes, a cluster, or this one."""
+"""Where does a long command run? In several processes, on a cluster, or in this process."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tracker.errors import ConfigError
 
 @contextmanager
 def open_executor(executor: str, jobs: int, units: int) -> Iterator[Executor | None]:
-    """Whoever is asked for.
+    """The executor that the option names.
 
     Args:
         executor: `processes`, or the address of a Dask scheduler.
@@ -33,7 +33,8 @@ def open_executor(executor: str, jobs: int, units: int) -> Iterator[Executor | N
             yield cluster
     else:
         raise ConfigError(
-            f"--executor is {executor!r}; needed is processes, or an address as dask://host:8786."
+            f"--executor is {executor!r}; expected processes, or an address such as "
+            "dask://host:8786."
         )
 
 

@@ -113,7 +113,7 @@ def monte_carlo(
     """
     if trials < 1 or seed < 0:
         raise ConfigError(
-            f"{trials} trials of seed {seed} were asked for; needed are a trial and a seed from 0."
+            f"{trials} trials of seed {seed} were asked for; expected a trial and a seed from 0."
         )
     name, scenario = find_scenario(scenario)
     config = default_config(scenario) if config is None else config
@@ -166,7 +166,7 @@ def find_scenario(scenario: str | Scenario) -> tuple[str, Scenario]:
 
 
 def _settings(scenario: Scenario, config: Config, seed: int) -> dict[str, Any]:
-    """All that decides what the rows are, in plain values."""
+    """Everything on which the rows depend, in plain values."""
     settings = {
         "version": version("raised-hand-tracker"),
         "seed": seed,

@@ -1,10 +1,10 @@
-"""What did the trials say, taken together? Figures with their intervals, and what was expected."""
+"""The figures of a study over all trials, with their intervals and what was expected."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from scipy.stats import norm
@@ -20,6 +20,7 @@ from tracker.evaluation.trials.scenario import (
     KnownPeopleScenario,
     PeopleScenario,
     ScanScenario,
+    Scenario,
 )
 
 #: A filter is judged once its first second, in which it knows what it was told, is over.
@@ -38,6 +39,7 @@ class Figure:
         low: 95 % interval of `value`, from the spread among trials; NaN where there is none.
         high: Its other end.
         expected: Between which numbers `value` lies in 95 % of all studies of a perfect filter.
+        good: Which values are good, in a word or two; empty for what is neither good nor bad.
     """
 
     name: str
@@ -45,24 +47,48 @@ class Figure:
     low: float = float("nan")
     high: float = float("nan")
     expected: tuple[float, float] | None = None
+    good: str = ""
 
     @property
     def as_expected(self) -> bool | None:
-        """Whether the value keeps to what is expected; None where nothing is."""
+        """Whether the value lies in the expected interval; None if there is none."""
         if self.expected is None:
             return None
         return self.expected[0] <= self.value <= self.expected[1]
 
 
+_Scenario = TypeVar("_Scenario", bound=Scenario)
+
+
 @dataclass(frozen=True, eq=False)
-class FilterStudy:
-    """Trials of a `FilterScenario`.
+class StudyOf(Generic[_Scenario]):
+    """Trials of a scenario.
 
     Attributes:
         name: Of the scenario.
         scenario: What happened.
         config: The tracker's parameters.
         seed: Of the study.
+        rows: Figures of each trial, shape (B,), by name.
+    """
+
+    name: str
+    scenario: _Scenario
+    config: Config
+    seed: int
+    rows: dict[str, FloatArray]
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return len(next(iter(self.rows.values())))
+
+
+@dataclass(frozen=True, eq=False)
+class FilterStudy(StudyOf[FilterScenario]):
+    """Trials of a `FilterScenario`.
+
+    Attributes:
         rows: Figures of each trial, shape (B,): `mse_m2`, `bound_m2` (along the trial's own path)
             and `mean_nees`, means over the frames once settled; `final_error_m`, `final_nees` at
             the last frame.
@@ -71,19 +97,9 @@ class FilterStudy:
         information: Shape (T, 2, 2), mean over the trials.
     """
 
-    name: str
-    scenario: FilterScenario
-    config: Config
-    seed: int
-    rows: dict[str, FloatArray]
     squared_error_m2: FloatArray
     nees: FloatArray
     information: FloatArray
-
-    @property
-    def trials(self) -> int:
-        """How many."""
-        return len(self.rows["mse_m2"])
 
     @cached_property
     def bound_m2(self) -> FloatArray:
@@ -99,7 +115,7 @@ class FilterStudy:
 
     @property
     def lost(self) -> int:
-        """Trials whose track is nowhere near at the end."""
+        """Trials whose track is far from the person at the end."""
         limit_m = LOST_BOUNDS * np.sqrt(self.bound_m2[-1])
         return int(np.count_nonzero(~(self.rows["final_error_m"] <= limit_m)))
 
@@ -109,83 +125,54 @@ class FilterStudy:
         settled = settled_frame(self.scenario)
         expected_m = float(np.sqrt(self.bound_m2[settled:].mean()))
         bound_m = float(np.sqrt(self.rows["bound_m2"].mean()))
-        rmse = _root_mean("RMSE (m)", self.rows["mse_m2"])
+        rmse = _root_mean("RMSE (m)", self.rows["mse_m2"], "less")
         bounds = mean_bounds(4, self.trials)
-        nees = _mean("NEES at the end (ideal 4)", self.rows["final_nees"])
+        nees = _mean("NEES at the end (ideal 4)", self.rows["final_nees"], "near 4")
         return (
             Figure(
                 "RMSE / Cramer-Rao bound",
                 rmse.value / bound_m,
                 rmse.low / bound_m,
                 rmse.high / bound_m,
+                good="near 1",
             ),
             rmse,
             Figure("bound along the paths (m)", bound_m),
             Figure("bound of expected information (m)", expected_m),
-            Figure(nees.name, nees.value, nees.low, nees.high, bounds),
-            _mean("NEES over time (ideal 4)", self.rows["mean_nees"]),
-            Figure("tracks lost", float(self.lost)),
+            replace(nees, expected=bounds),
+            _mean("NEES over time (ideal 4)", self.rows["mean_nees"], "near 4"),
+            Figure("tracks lost", float(self.lost), good="0"),
         )
 
 
 @dataclass(frozen=True, eq=False)
-class KnownPeopleStudy:
+class KnownPeopleStudy(StudyOf[KnownPeopleScenario]):
     """Trials of a `KnownPeopleScenario`.
 
     Attributes:
-        name: Of the scenario.
-        scenario: What happened.
-        config: The tracker's parameters.
-        seed: Of the study.
         rows: Figures of each trial, shape (B,), from `known_people.known_people_rows`.
     """
-
-    name: str
-    scenario: KnownPeopleScenario
-    config: Config
-    seed: int
-    rows: dict[str, FloatArray]
-
-    @property
-    def trials(self) -> int:
-        """How many."""
-        return len(self.rows["mse_m2"])
 
     @property
     def figures(self) -> tuple[Figure, ...]:
         """The table of the study."""
         rows = self.rows
         return (
-            _root_mean("RMSE (m)", rows["mse_m2"]),
-            _mean("NEES of found people (ideal 4)", rows["final_nees"]),
-            _mean("wrong measurements, share", rows["wrong_share"]),
-            _mean("people swapped, share", rows["swapped_share"]),
-            _mean("people lost, share", rows["lost_share"]),
+            _root_mean("RMSE (m)", rows["mse_m2"], "less"),
+            _mean("NEES of found people (ideal 4)", rows["final_nees"], "near 4"),
+            _mean("wrong measurements, share", rows["wrong_share"], "0"),
+            _mean("people swapped, share", rows["swapped_share"], "0"),
+            _mean("people lost, share", rows["lost_share"], "0"),
         )
 
 
 @dataclass(frozen=True, eq=False)
-class PeopleStudy:
+class PeopleStudy(StudyOf[PeopleScenario | ScanScenario]):
     """Trials of a `PeopleScenario` or a `ScanScenario`.
 
     Attributes:
-        name: Of the scenario.
-        scenario: What happened.
-        config: The tracker's parameters.
-        seed: Of the study.
         rows: Figures of each trial, shape (B,), by the names of `metrics.scores.score_trial`.
     """
-
-    name: str
-    scenario: PeopleScenario | ScanScenario
-    config: Config
-    seed: int
-    rows: dict[str, FloatArray]
-
-    @property
-    def trials(self) -> int:
-        """How many."""
-        return len(self.rows["gospa_m"])
 
     @property
     def remark(self) -> str:
@@ -202,24 +189,24 @@ class PeopleStudy:
         rows = self.rows
         hands, again = float(rows["hands"].sum()), float(rows["raised_again"].sum())
         return (
-            _mean("GOSPA (m), cutoff 1 m", rows["gospa_m"]),
-            _mean("  error of places (m²)", rows["gospa_localisation"]),
-            _mean("  people missed (m²)", rows["gospa_missed"]),
-            _mean("  false tracks (m²)", rows["gospa_false"]),
-            _mean("OSPA (m), cutoff 1 m", rows["ospa_m"]),
-            _mean("missed share of people", rows["missed_share"]),
-            _mean("false tracks in a frame", rows["false_tracks"]),
-            _mean("identity switches a minute", rows["identity_switches_per_min"]),
-            _mean("track purity", rows["track_purity"]),
-            _mean("RMSE of found people (m)", rows["rmse_m"]),
-            _mean("NEES of the position (ideal 2)", rows["nees_position"]),
-            _mean("people inside the 95 % ellipse, share", rows["covered_share"]),
-            _mean("time to raise (s)", rows["time_to_raise_s"]),
+            _mean("GOSPA (m), cutoff 1 m", rows["gospa_m"], "less"),
+            _mean("  error of places (m²)", rows["gospa_localisation"], "less"),
+            _mean("  people missed (m²)", rows["gospa_missed"], "less"),
+            _mean("  false tracks (m²)", rows["gospa_false"], "less"),
+            _mean("OSPA (m), cutoff 1 m", rows["ospa_m"], "less"),
+            _mean("missed share of people", rows["missed_share"], "0"),
+            _mean("false tracks in a frame", rows["false_tracks"], "0"),
+            _mean("identity switches a minute", rows["identity_switches_per_min"], "0"),
+            _mean("track purity", rows["track_purity"], "near 1"),
+            _mean("RMSE of found people (m)", rows["rmse_m"], "less"),
+            _mean("NEES of the position (ideal 2)", rows["nees_position"], "near 2"),
+            _mean("people inside the 95 % ellipse, share", rows["covered_share"], "near 0.95"),
+            _mean("time to raise (s)", rows["time_to_raise_s"], "less"),
             Figure("raised hands", hands),
-            _share("missed raises, share", rows["missed_raises"].sum(), hands),
-            _mean("false raises in a trial", rows["false_raises"]),
-            _share("raised again: same identity", rows["same_identity"].sum(), again),
-            _share("raised again: somebody else's", rows["wrong_identity"].sum(), again),
+            _share("missed raises, share", rows["missed_raises"].sum(), hands, "0"),
+            _mean("false raises in a trial", rows["false_raises"], "0"),
+            _share("raised again: same identity", rows["same_identity"].sum(), again, "near 1"),
+            _share("raised again: somebody else's", rows["wrong_identity"].sum(), again, "0"),
         )
 
 
@@ -232,7 +219,7 @@ def settled_frame(scenario: FilterScenario) -> int:
 
 
 def study_as_dict(study: Study) -> dict[str, Any]:
-    """What a study says in plain numbers, fit for JSON; None for what was not measured."""
+    """A study in plain numbers, for JSON; None for what was not measured."""
     return {
         "scenario": study.name,
         "title": study.scenario.title,
@@ -244,34 +231,35 @@ def study_as_dict(study: Study) -> dict[str, Any]:
                 "value": _number(figure.value),
                 "interval_95": [_number(figure.low), _number(figure.high)],
                 "expected_95": None if figure.expected is None else list(figure.expected),
+                "good": figure.good,
             }
             for figure in study.figures
         ],
     }
 
 
-def _mean(name: str, values: FloatArray) -> Figure:
+def _mean(name: str, values: FloatArray, good: str) -> Figure:
     values = values[np.isfinite(values)]
     if len(values) == 0:
-        return Figure(name, float("nan"))
+        return Figure(name, float("nan"), good=good)
     mean = float(values.mean())
     if len(values) == 1:
-        return Figure(name, mean)
+        return Figure(name, mean, good=good)
     half = float(norm.ppf(0.975) * values.std(ddof=1) / np.sqrt(len(values)))
-    return Figure(name, mean, mean - half, mean + half)
+    return Figure(name, mean, mean - half, mean + half, good=good)
 
 
-def _root_mean(name: str, squares: FloatArray) -> Figure:
-    mean = _mean(name, squares)
+def _root_mean(name: str, squares: FloatArray, good: str) -> Figure:
+    mean = _mean(name, squares, good)
     value, low, high = (float(np.sqrt(max(x, 0.0))) for x in (mean.value, mean.low, mean.high))
-    return Figure(name, value, low, high)
+    return Figure(name, value, low, high, good=good)
 
 
-def _share(name: str, count: float, total: float) -> Figure:
+def _share(name: str, count: float, total: float, good: str) -> Figure:
     """A share and Wilson's interval of it."""
     if total == 0:
-        return Figure(name, float("nan"))
-    return Figure(name, float(count / total), *wilson_interval(count, total))
+        return Figure(name, float("nan"), good=good)
+    return Figure(name, float(count / total), *wilson_interval(count, total), good=good)
 
 
 def _number(value: float) -> float | None:

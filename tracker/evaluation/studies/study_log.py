@@ -1,4 +1,4 @@
-"""What of a study is on disk already, so that a stopped one goes on where it was?
+"""Which units of a study are already on disk? So that a stopped study can continue.
 
 A folder holds `settings.yaml` (which study this is), `trials.csv` (a line per trial, in order,
 every number to its last bit) and, of a filter scenario, `sums.f64` (a record for each unit). They
@@ -82,7 +82,7 @@ class StudyLog(Closing):
         if self.trials > trials:
             raise ConfigError(
                 f"{self._folder}: holds {self.trials} trials of this study, and {trials} were "
-                "asked for; ask for as many or more, or name another folder."
+                "asked for; ask for at least as many, or choose another folder."
             )
         for number, first in enumerate(range(0, trials, self._unit_trials)):
             end = min(first + self._unit_trials, trials)
@@ -134,8 +134,8 @@ class StudyLog(Closing):
         if not path.exists():
             if self._rows_path.exists():
                 raise ConfigError(
-                    f"{self._rows_path}: is there without a settings.yaml that says of which "
-                    "study; name another folder, or take it away."
+                    f"{self._rows_path}: exists without a settings.yaml that says which study it "
+                    "is; choose another folder, or delete the file."
                 )
             new = path.with_suffix(".new")  # in one step: a file is there in full or not at all
             new.write_text(yaml.safe_dump(settings, sort_keys=False), encoding="utf-8")
@@ -144,12 +144,12 @@ class StudyLog(Closing):
         try:
             there = yaml.safe_load(path.read_text(encoding="utf-8"))
         except (yaml.YAMLError, UnicodeDecodeError) as error:
-            raise RecordingError(f"{path}: is no YAML; name another folder.") from error
+            raise RecordingError(f"{path}: is not YAML; choose another folder.") from error
         differences = list(_differences(there, settings))
         if differences:
             raise ConfigError(
                 f"{self._folder}: holds another study ({'; '.join(differences[:3])}); "
-                "name another folder, or take this one away."
+                "choose another folder, or delete this one."
             )
 
     def _read_rows(self) -> dict[str, FloatArray]:
@@ -166,9 +166,9 @@ class StudyLog(Closing):
         try:
             table = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
         except ValueError as error:
-            raise RecordingError(f"{path}: is damaged ({error}); take it away.") from error
+            raise RecordingError(f"{path}: is damaged ({error}); delete it.") from error
         if table.shape[1] != len(names) or (table[:, 0] != np.arange(len(table))).any():
-            raise RecordingError(f"{path}: does not hold trial after trial; take it away.")
+            raise RecordingError(f"{path}: does not contain the trials in order; delete it.")
         return {name: table[:, column] for column, name in enumerate(names) if column > 0}
 
     def _read_sums(self) -> np.ndarray:
@@ -186,8 +186,8 @@ class StudyLog(Closing):
 
     def _failure(self, error: OSError) -> RecordingError:
         return RecordingError(
-            f"{self._folder}: cannot be read and written ({error.strerror}); "
-            "a folder that may be written and has room is needed."
+            f"{self._folder}: cannot be read and written ({error.strerror}); choose a writable "
+            "folder with free space."
         )
 
 
@@ -205,4 +205,4 @@ def _differences(there: Any, here: Any, name: str = "") -> Iterator[str]:
             path = f"{name}.{key}".lstrip(".")
             yield from _differences(there.get(key), here.get(key), path)
     elif there != here:
-        yield f"{name or 'settings'} is {there} there, {here} here"
+        yield f"{name or 'settings'} is {there} in the folder and {here} now"

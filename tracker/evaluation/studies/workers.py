@@ -69,8 +69,8 @@ def run_in_order(
             yield result
     except BrokenExecutor as error:
         raise WorkerError(
-            f"Workers died {deaths} times and no unit of work was finished in between; mostly the "
-            "memory is too small for so many at once. Run fewer (--jobs)."
+            f"Workers died {deaths} times and no unit of work was finished in between; often "
+            "there is too little memory for so many at once. Use fewer processes (--jobs)."
         ) from error
     finally:
         for _, future in waiting:
@@ -78,7 +78,7 @@ def run_in_order(
 
 
 class Processes(Executor):
-    """Processes of this machine; in place of a pool that broke, the next call opens a new one.
+    """Processes of this machine; if a pool breaks, the next call opens a new one.
 
     Each process is on a leash, a pipe whose other end is held here: at a tug, or when the end is
     let go because this process dies, they leave at once. The pool's own farewell could wait
@@ -102,7 +102,7 @@ class Processes(Executor):
             return self._pool.submit(call, *args, **words)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
-        """Let the processes go; by default, what they have not finished is not wanted any more."""
+        """End the processes; by default, unfinished calls are dropped."""
         self._pool.shutdown(wait and not cancel_futures, cancel_futures=cancel_futures)
         if cancel_futures and not self._leash.closed:
             self._worker_end.close()
@@ -125,7 +125,7 @@ def _is_broken(future: Future[Any]) -> bool:
 
 
 def _leave_in_time(leash: Connection) -> None:
-    """A process of the pool leaves at Ctrl-C without a word, and at a tug on its leash."""
+    """A process of the pool ends silently at Ctrl-C, and when its parent is gone."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     Thread(target=_leave_with, args=(leash,), daemon=True).start()
 

@@ -1,4 +1,4 @@
-"""One person a trial, many trials at once: is the filter as good as can be, and does it know?
+"""One person per trial, many trials at once: is the filter optimal and consistent?
 
 Trials go through the tracker's own prediction and correction. Everybody moves at nearly constant
 velocity, and the filter knows (whatever `motion` says).

@@ -1,4 +1,4 @@
-"""People who are known from the start: whose measurement is whose, and what do mistakes cost?
+"""People known from the start: association only, and what its mistakes cost.
 
 Everybody moves at nearly constant velocity, as the tracker believes. All trials of a unit go
 through one loop: a million frames of five people take seconds.

@@ -1,4 +1,4 @@
-"""Many trials of people who are known from the start: whose measurement is whose, and where now?
+"""Many trials of people known from the start: association and update, as one loop.
 
 The tracker's own steps for one sensor at the origin: predict, gate, assign, correct. Nobody comes
 or goes, and what is assigned counts in full.
@@ -10,22 +10,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tracker.compiling.loops import maker, step
+from tracker.compiling.loops import loop
 from tracker.config import Config
 from tracker.containers import FloatArray, IntArray, Measurements
 from tracker.containers.arrays import frozen
 from tracker.evaluation.trials.machine_code import machine_code
 from tracker.tracking.association.association import assign
-from tracker.tracking.association.gating import Pairs, floored
+from tracker.tracking.association.gating import find_pairs
+from tracker.tracking.people import TAG, room_for
 from tracker.tracking.prediction.motion import Motion, carry, walk
 from tracker.tracking.sensing.claims import Claims, claims_of
-from tracker.tracking.sensing.innovation import (
-    innovation_of,
-    noise_of,
-    seen_from,
-    squared_distance,
-)
-from tracker.tracking.sensing.sensor_kinds import BEARING_RANGE, area
 from tracker.tracking.settings import Settings, settings_of
 from tracker.tracking.update.correction import correct
 
@@ -64,7 +58,6 @@ def follow(
         config: Process noise, the gate, `detection_probability`, `newcomer_density`.
     """
     config = config.model_copy(update={"outlier_dof": 0.0})
-    chance, nobody = config.detection_probability, 2.0 * np.pi * config.newcomer_density
     measured = values.shape[2]
     anything = Measurements.polar(np.zeros(measured), np.ones(measured), *std)
     return machine_code(follow_trials)(
@@ -73,7 +66,6 @@ def follow(
         frozen(np.ascontiguousarray(values)),
         claims_of(anything),
         walk(dt_s, config.acceleration_density),
-        float(np.log(chance / (1.0 - chance) / nobody)),
         settings_of(config),
     )
 
@@ -84,7 +76,6 @@ def follow_trials(
     values: FloatArray,
     claims: Claims,
     motion: Motion,
-    log_chance: float,
     settings: Settings,
 ) -> Followed:
     """`follow`, as a loop.
@@ -95,7 +86,6 @@ def follow_trials(
         values: Shape (B, T, M, 2).
         claims: M claims, but for their values.
         motion: Between frames.
-        log_chance: What all pairs have in common of their log-odds.
         settings: Of the tracker.
     """
     trials, frames, measured, _ = values.shape
@@ -105,8 +95,12 @@ def follow_trials(
         np.empty((trials, count, 4, 4)),
         np.empty((trials, frames, count), np.int64),
     )
-    now, spread, root = np.empty((1, count, 4)), np.empty((1, count, 4, 4)), np.empty((4, 2))
-    room = _room_for_pairs(count * measured)
+    people, root = room_for(1, count, 1), np.empty((4, 2))
+    now, spread, chance = people.mean, people.covariance, np.empty(count)
+    for person in range(count):
+        people.weight[0, person], people.counts[TAG, person] = 1.0, -1
+        chance[person] = settings.detection_probability
+    rows, likeness = np.empty(measured, np.int64), np.empty((0, 0))
     for trial in range(trials):
         now[0], spread[0] = mean[trial], covariance[trial]
         for frame in range(frames):
@@ -116,10 +110,11 @@ def follow_trials(
             )  # fmt: skip
             for person in range(count):
                 carry(now, spread, 0, person, motion, now, spread)
-            end = _find_pairs(now, spread, measurements, log_chance, settings, room)
-            pairs = Pairs(
-                room.track[:end], room.claim, room.log_likelihood, room.log_newcomer, room.log_odds
-            )
+            end = _measured(values[trial, frame], rows)
+            pairs = find_pairs(
+                people, now, spread, measurements, rows[:end], chance, likeness,
+                settings.newcomer_density, settings,
+            )  # fmt: skip
             chosen = assign(pairs, count, measured)
             for person in range(count):
                 row = -1 if chosen[person] < 0 else pairs.claim[chosen[person]]
@@ -135,40 +130,12 @@ def follow_trials(
     return found
 
 
-@maker
-def _room_for_pairs(count: int) -> Pairs:
-    whole, number = np.empty(count, np.int64), np.empty(count)
-    return Pairs(whole, whole.copy(), np.empty((count, 1)), number, number.copy())
-
-
-@step
-def _find_pairs(
-    mean: FloatArray,
-    covariance: FloatArray,
-    claims: Claims,
-    log_chance: float,
-    settings: Settings,
-    room: Pairs,
-) -> int:
-    """`gating.find_pairs`, written to `room`, where all claims have one sensor and one noise.
-
-    So what the sensor would see of somebody is worked out once for all of them.
-    """
-    pairs, limit = 0, settings.ranged_limit
-    r = noise_of(BEARING_RANGE, claims, 0)
-    for person in range(mean.shape[1]):
-        expected, h, own, doubt = seen_from(BEARING_RANGE, mean, covariance, 0, person, claims, 0)
-        own = floored(own, h, doubt, settings)
-        s = own[0] + r[0], own[1] + r[1], own[2] + r[2]
-        for row in range(len(claims.values)):
-            y = innovation_of(BEARING_RANGE, expected, claims, row)
-            if not y[0] * y[0] <= limit * s[0]:  # most pairs, and those with nothing
-                continue
-            distance, spanned = squared_distance(y, s, 0.0)
-            if distance <= limit:
-                own_area = area(BEARING_RANGE, claims, row, settings)
-                log_newcomer = 0.5 * np.log(spanned * own_area * own_area)
-                room.track[pairs], room.claim[pairs] = person, row
-                room.log_odds[pairs] = log_chance - 0.5 * distance - log_newcomer
-                pairs += 1
-    return pairs
+@loop
+def _measured(values: FloatArray, rows: IntArray) -> int:
+    """Write down which measurements there are; gives how many."""
+    count = 0
+    for row in range(len(values)):
+        if not np.isnan(values[row, 0]):
+            rows[count] = row
+            count += 1
+    return count

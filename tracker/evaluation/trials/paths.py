@@ -88,9 +88,9 @@ def _read(file: str | Path) -> FloatArray:
         lines = Path(file).read_text(encoding="utf-8").splitlines()[1:]
         table = np.array([line.split(",") for line in lines], dtype=np.float64)
     except (OSError, ValueError) as error:
-        raise SceneError(f"{file}: is no table of t_s, id, x_m, y_m ({error}).") from error
+        raise SceneError(f"{file}: is not a table of t_s, id, x_m, y_m ({error}).") from error
     if table.ndim != 2 or table.shape[1] != 4:
         raise SceneError(
-            f"{file}: has the shape {table.shape}; needed are rows of t_s, id, x_m, y_m."
+            f"{file}: has the shape {table.shape}; expected rows of t_s, id, x_m, y_m."
         )
     return table

@@ -1,4 +1,4 @@
-"""What the sensors make of a scene: noisy, late, blind at times, seeing things at others."""
+"""Simulated sensors: noise, delay, missed detections and clutter."""
 
 from __future__ import annotations
 

@@ -12,12 +12,14 @@ from tracker.containers import CameraImage, FrameResult, Hands, Truth
 from tracker.evaluation.metrics.scores import TrialScores
 from tracker.evaluation.trials.scenario import ScanScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
+from tracker.perception.detector import NO_HINTS, Hints
 from tracker.pipeline import Pipeline
 from tracker.simulation.floor_map import floor_map
 from tracker.simulation.lidar import ScanSimulator
 from tracker.simulation.motion import people_at
 from tracker.simulation.projection import Viewpoint
 from tracker.simulation.random_rooms.bistro import draw_bistro
+from tracker.simulation.random_rooms.guests import Visit
 from tracker.simulation.random_rooms.restaurant import draw_restaurant
 from tracker.simulation.rendering.camera_view import hands_in_view
 from tracker.simulation.scene import Scene
@@ -63,9 +65,14 @@ def play_scan_trial(
     rng = trial_rng(seed, trial)
     low, high = scenario.people
     draw_room = draw_bistro if scenario.furniture == "bistro" else draw_restaurant
-    scene = draw_room(
-        rng,
-        people=int(rng.integers(low, high + 1)),
+    visit = visit_of(scenario, int(rng.integers(low, high + 1)))
+    yield from play_scene(scenario, draw_room(rng, visit), config, rng, watch=watch)
+
+
+def visit_of(scenario: ScanScenario, people: int) -> Visit:
+    """So many people, who do what the scenario says."""
+    return Visit(
+        people=people,
         duration_s=scenario.duration_s,
         rate_hz=scenario.rate_hz,
         sitting_share=scenario.sitting_share,
@@ -73,7 +80,6 @@ def play_scan_trial(
         hand_up_s=scenario.hand_up_s,
         hand_down_s=scenario.hand_down_s,
     )
-    yield from play_scene(scenario, scene, config, rng, watch=watch)
 
 
 def play_scene(
@@ -146,7 +152,9 @@ def _transforms(
 
 
 class _ShownHands:
-    """Stands in for the hand models: it is told who is there, and looks at no picture."""
+    """Replaces the hand models: it gets the truth, and looks at no picture."""
+
+    work = None
 
     def __init__(self, scenario: ScanScenario, scene: Scene, rng: np.random.Generator) -> None:
         self._scenario, self._scene, self._rng = scenario, scene, rng
@@ -158,7 +166,7 @@ class _ShownHands:
         self._view = Viewpoint.of(self._scene.camera, map_from_camera(self._scene, time_s))
         self.in_view = hands_in_view(self._scene, self._view, self.people)
 
-    def find(self, image: CameraImage) -> Hands:
+    def find(self, image: CameraImage, hints: Hints = NO_HINTS) -> Hands:
         return show_hands(
             self._scene,
             self._view,

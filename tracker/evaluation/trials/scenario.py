@@ -18,7 +18,7 @@ def _parameters(**values: Any) -> Parameters:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FilterScenario:
-    """One person who moves exactly as the filter believes, seen by one sensor.
+    """One person who moves exactly as the filter assumes, seen by one sensor.
 
     Nothing but the filter is at work: the person is known from the start, every measurement is
     theirs. So the posterior Cramer-Rao bound is known, and NEES has a distribution. Trials are
@@ -121,7 +121,7 @@ class PeopleScenario:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownPeopleScenario:
-    """People who are known from the start and move as the tracker believes, seen by one sensor.
+    """People known from the start who move as the tracker assumes, seen by one sensor.
 
     Prediction, gate, assignment and correction are at work; nobody comes or goes. Whatever
     `motion`, `association` and `outlier_dof` say, people walk, the assignment is the most likely
@@ -219,21 +219,21 @@ _HANDS_DOWN = PeopleScenario(
 SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
     {
         "model-matched": FilterScenario(
-            title="One person who moves as the filter believes, bearings to 2 degrees.",
+            title="One person who moves exactly as the filter assumes; bearing noise 2 degrees.",
             parameters=_MATCHED,
         ),
         "model-matched-fine": FilterScenario(
-            title="The same with bearings to 0.5 degrees.",
+            title="The same with bearing noise 0.5 degrees.",
             bearing_std_deg=0.5,
             parameters=_MATCHED,
         ),
         "model-matched-coarse": FilterScenario(
-            title="The same with bearings to 5 degrees.",
+            title="The same with bearing noise 5 degrees.",
             bearing_std_deg=5.0,
             parameters=_MATCHED,
         ),
         "outliers": FilterScenario(
-            title="As model-matched, but one range in twenty is off by meters.",
+            title="Like model-matched, but one range in twenty is wrong by meters.",
             outlier_share=0.05,
             parameters=_HEAVY_TAILED,
         ),
@@ -283,7 +283,8 @@ SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
             sitting_share=1.0,
         ),
         "cheap-lidar": PeopleScenario(
-            title="A cheap laser among people who hardly stop, and nobody has told the tracker.",
+            title="A cheap, noisy laser and people who hardly stop; the tracker is not told the "
+            "noise.",
             people=(3, 6),
             pause_s=1.0,
             hand_down_s=(3.0, 10.0),

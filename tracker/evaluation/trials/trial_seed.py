@@ -1,4 +1,4 @@
-"""Trial i of seed s is the same whoever runs it, and together with how many others."""
+"""Trial i of seed s is the same on any worker and among any number of trials."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where does the camera really stand and look, beside the laser? Told by people with a hand up.
+"""What is the camera's true pose relative to the laser? Estimated from raised hands.
 
 The camera tells in which direction a hand is, the laser where bodies stand. With d the camera's
 place and psi its yaw, both seen from where it is believed to be, a body at p whose hand is up to

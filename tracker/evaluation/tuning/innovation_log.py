@@ -43,10 +43,10 @@ class InnovationLog:
         """
         if not self._parts:
             raise ConfigError(
-                "No measurement was assigned to anybody; a scenario or recording in which people "
-                "are tracked is needed."
+                "No measurement was assigned to anybody; use a scenario or recording in which "
+                "people are tracked."
             )
-        return Innovations.concatenate(self._parts)
+        return Innovations.concatenate(*self._parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +64,6 @@ class Nis:
     samples: int
     mean: float
     bounds: tuple[float, float]
-
-    @property
-    def is_consistent(self) -> bool:
-        """The mean lies within its bounds."""
-        return self.bounds[0] <= self.mean <= self.bounds[1]
 
 
 def innovations_of_steps(steps: Iterable[Step], config: Config) -> Innovations:

@@ -1,4 +1,4 @@
-"""What is a better tracker? By truth, where it is simulated; by what it foretells, where not.
+"""What is a better tracker? GOSPA in simulations, prediction of measurements in recordings.
 
 An objective has parts that the search sees and parts that it never sees, so that what was found
 can be held against what was there before. The parts are the same for every configuration:
@@ -115,7 +115,7 @@ class ScenarioObjective:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordingObjective:
-    """How well a recording's measurements were foretold, in pieces of so many seconds.
+    """How well a recording's measurements were predicted, in pieces of some seconds.
 
     The search sees the first part of the recording, the verdict is about the rest; in both the
     tracker runs from the beginning.
@@ -143,8 +143,8 @@ class RecordingObjective:
         seen = stamps < self._split_ns
         if min(len(np.unique(self._piece(part))) for part in (stamps[seen], stamps[~seen])) < 2:
             raise ConfigError(
-                f"{self.name}: holds too few measurements to search with some and judge by the "
-                "others; a recording of a minute or more in which people raise hands is needed."
+                f"{self.name}: contains too few measurements for a search and a final test; use "
+                "a recording of a minute or more in which people raise hands."
             )
 
     def seen(self, config: Config) -> Iterator[float]:
@@ -163,14 +163,14 @@ class RecordingObjective:
         return tunable()[name].kind != "life"
 
     def check(self, names: Sequence[str]) -> None:
-        """Refuse what the measurements tell nothing of."""
+        """Refuse parameters on which the score of measurements does not depend."""
         blind = [name for name in names if not self.judges(name)]
         if blind:
             raise ConfigError(
-                f"This recording says nothing about {', '.join(blind)}: what it foretells does "
-                "not depend on the life of tracks; stated noise can be changed afterwards under "
-                "`ranging: person` only, and that of hands without poses only. Choose "
-                "others, or tune on a scenario."
+                f"A recording cannot tune {', '.join(blind)}: its score does not depend on when "
+                "tracks begin and end (life). It can tune the stated noise only with `ranging: "
+                "person`, and that of hands only with `pose_opinion: none`. Choose other "
+                "parameters, or tune on a scenario."
             )
 
     def describe(self) -> str:

@@ -1,13 +1,13 @@
-"""How well was each measurement foretold? A score of trackers where no truth is known.
+"""How well was each measurement predicted? A score for recordings without truth.
 
 Before a measurement counts, the tracker expects people where it believes them, and newcomers and
-false measurements anywhere. So it foretells where the next measurement is, one step ahead:
+false measurements anywhere. So it predicts where the next measurement is, one step ahead:
 
     f(z) = ( lambda + sum_t r_t Pd_t p_t(z) ) / ( lambda A + sum_t r_t Pd_t )    per square meter,
 
 with lambda the density of newcomers, A the area in view, and of each person the existence r, the
 chance to be detected Pd and the predicted density p. The mean of log f is a proper score: nothing
-scores better on average than what is true. A tracker whose gates reject everything foretells
+scores better on average than what is true. A tracker whose gates reject everything predicts
 nothing and gets log(1 / A); one that believes in ghosts, or in itself too much, does worse.
 
 Source: log score: Gneiting and Raftery, "Strictly Proper Scoring Rules, Prediction, and
@@ -52,13 +52,13 @@ class PredictiveScore:
         expected = round_.existence * round_.chance
         share = np.exp(log_densities(round_) - round_.log_newcomer) * expected[round_.track]
         place = np.searchsorted(round_.rows, round_.claim)
-        foretold = np.bincount(place, share, count)  # in units of the newcomers' density
+        predicted = np.bincount(place, share, count)  # in units of the newcomers' density
         is_hand = bool(round_.claims.raised[round_.rows[0]])  # of all or of none in a round
         area_m2 = self._camera_area_m2 if is_hand else self._scan_area_m2
         config = round_.config
         density = config.newcomer_density if is_hand else config.bystander_density
         total = density * area_m2 + expected.sum()
-        self._scores.append(np.log(density) + np.log1p(foretold) - np.log(total))
+        self._scores.append(np.log(density) + np.log1p(predicted) - np.log(total))
         self._stamps.append(np.full(count, round_.stamp_ns, dtype=np.int64))
 
     @property

@@ -1,4 +1,4 @@
-"""What did a search find, and is it better where the search has not looked?"""
+"""What did a search find, and is it better on data that the search did not use?"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which parameters serve a scenario or a recording best? A search that can be stopped and goes on.
+"""Which parameters are best for a scenario or a recording? A search that can be continued.
 
 Optuna's tree-structured Parzen estimator proposes, every trial sees the same scenes, and what has
 been tried lies in Optuna's storage: several processes share it, and a later call goes on in it.
@@ -52,7 +52,7 @@ def tune(
     progress: Progress = lambda done, best: None,
     judged: Judged = lambda scenes: None,
 ) -> Tuning:
-    """Search until the study holds so many trials, then judge the best on what no trial has seen.
+    """Search for this many trials, then test the best on data that no trial has used.
 
     The first trial is `base` itself. Run again with the same storage, it goes on where it was; so
     it does after an interruption.
@@ -139,8 +139,8 @@ def _open(objective: Objective, names: Sequence[str], base: Config, storage: str
     elif before != problem:
         other = ", ".join(key for key in problem if before.get(key) != problem[key])
         raise ConfigError(
-            f"{storage}: holds a search with another {other}, so that its figures do not compare; "
-            "give another --storage or --out, or the same words as then."
+            f"{storage}: holds a search with another {other}, so the figures cannot be compared; "
+            "give another --storage or --out, or the same arguments as before."
         )
     return study
 
@@ -162,7 +162,7 @@ def _opened(optuna: ModuleType, storage: str) -> Any:
         return optuna.storages.get_storage(storage)
     except (ValueError, ImportError, ArgumentError, NoSuchModuleError) as error:
         raise ConfigError(
-            f"--storage {storage}: cannot be used ({_reason(error)}); needed is an address of a "
+            f"--storage {storage}: cannot be used ({_reason(error)}); expected an address of a "
             "database, such as sqlite:///tuning.db."
         ) from error
 
@@ -177,7 +177,7 @@ def _storage_errors(storage: str) -> Iterator[None]:
         yield
     except (optuna.exceptions.StorageInternalError, SQLAlchemyError) as error:
         raise RecordingError(
-            f"--storage {storage}: cannot be read or written ({_reason(error)}); see to it, or "
+            f"--storage {storage}: cannot be read or written ({_reason(error)}); check it, or "
             "give another --storage or --out."
         ) from error
 
@@ -225,7 +225,7 @@ def _search(
             found.append(value)
             trial.report(float(np.mean(found)), part)
             if part + 1 < objective.parts and trial.should_prune():
-                raise optuna.TrialPruned("worse than most from the first scenes on")
+                raise optuna.TrialPruned("worse than most after the first scenes")
         return float(np.mean(found))
 
     def after(study: Study, trial: FrozenTrial) -> None:
@@ -259,7 +259,7 @@ def _share_out(
 
 
 def _search_on(*item: Any) -> None:
-    """In another process: Ctrl-C is the first one's to answer; this one ends with its trial."""
+    """In another process: the main process handles Ctrl-C; this one ends after its trial."""
     signal(SIGINT, SIG_IGN)
     _search(*item)
 
@@ -274,7 +274,7 @@ def _verdict(
 ) -> Tuning:
     complete = [trial for trial in study.trials if trial.state.name == "COMPLETE"]
     if not complete:
-        raise ConfigError("No trial came to its end; more --trials are needed.")
+        raise ConfigError("No trial was completed; use more --trials.")
     chosen = study.best_trial
     best = base.replace(**chosen.params)
     run = map if executor is None else executor.map
@@ -334,7 +334,7 @@ def _ended() -> tuple[Any, ...]:
 
 
 def check_optuna() -> None:
-    """See to it, before any long work, that a search can begin.
+    """Check, before any long work, that a search can begin.
 
     Raises:
         ConfigError: Optuna is not installed.

@@ -8,7 +8,7 @@ from pathlib import Path
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.evaluation.recordings.recorded_frames import recorded_frames
-from tracker.evaluation.trials.scan_trial import play_scene
+from tracker.evaluation.trials.scan_trial import play_scene, visit_of
 from tracker.evaluation.trials.scenario import ScanScenario
 from tracker.evaluation.trials.trial_seed import trial_rng
 from tracker.evaluation.tuning.sightings import Sightings, sightings_of
@@ -123,16 +123,7 @@ def simulated_sightings(
         turns: The robot turns to and fro on its place, by up to 1 rad/s.
     """
     config, rng = config or Config(), trial_rng(seed, 0)
-    scene = draw_restaurant(
-        rng,
-        people=scenario.people[1],
-        duration_s=scenario.duration_s,
-        rate_hz=scenario.rate_hz,
-        sitting_share=scenario.sitting_share,
-        pause_s=scenario.pause_s,
-        hand_up_s=scenario.hand_up_s,
-        hand_down_s=scenario.hand_down_s,
-    )
+    scene = draw_restaurant(rng, visit_of(scenario, scenario.people[1]))
     if turns:
         scene = scene.model_copy(update={"robot": _turning(scenario.duration_s)})
     true = scene.model_copy(update={"camera": true_camera})
@@ -172,7 +163,7 @@ def _mounted(
 ) -> Mounted:
     hands, bodies = zip(*headings, strict=True) if headings else ((), ())
     return Mounted(
-        Sightings.concatenate(parts),
+        Sightings.concatenate(*parts),
         mounting,
         camera,
         Headings.concatenate(hands),

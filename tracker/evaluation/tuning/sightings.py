@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import FloatArray, FrameResult, IntArray
+from tracker.containers.rows import Column, Rows
 from tracker.geometry import RigidTransform
 from tracker.ranging.measuring import scan_people
 from tracker.ranging.person_range import owner_side, ray_coordinates, size_misfit
@@ -21,8 +21,8 @@ _BESIDE_MAX_M = 1.5
 _AHEAD_MIN_M = 0.3
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Sightings:
+@dataclass(frozen=True, eq=False)
+class Sightings(Rows):
     """Raised hands and bodies; row i is one hand with one body that could be its owner's.
 
     The frame is the camera's body frame (x forward, y left), where the transforms believe it.
@@ -43,36 +43,19 @@ class Sightings:
     bearing_rad: FloatArray
     std_rad: FloatArray
     side: FloatArray
-    body_xy_m: FloatArray
+    body_xy_m: Annotated[FloatArray, Column((2,))]
     size_misfit: FloatArray
 
-    def __len__(self) -> int:
-        return len(self.hand)
-
-    def __getitem__(self, rows: Any) -> Sightings:
-        return Sightings(*(getattr(self, item.name)[rows] for item in fields(self)))
-
-    @staticmethod
-    def concatenate(parts: Sequence[Sightings]) -> Sightings:
+    @classmethod
+    def concatenate(cls, *parts: Sightings) -> Sightings:
         """Frames one after the other; hands are numbered anew."""
-        if not parts:
-            return Sightings.none()
         counts = [int(part.hand.max(initial=-1)) + 1 for part in parts]
         before = np.cumsum([0, *counts[:-1]])
-        columns = {
-            item.name: np.concatenate([getattr(part, item.name) for part in parts])
-            for item in fields(Sightings)
-        }
-        columns["hand"] = np.concatenate(
-            [part.hand + number for part, number in zip(parts, before, strict=True)]
-        )
-        return Sightings(**columns)
-
-    @staticmethod
-    def none() -> Sightings:
-        """No hands."""
-        whole, real = np.zeros(0, dtype=np.int64), np.zeros(0)
-        return Sightings(whole, whole, real, real, real, np.zeros((0, 2)), real)
+        renumbered = [
+            replace(part, hand=part.hand + number)
+            for part, number in zip(parts, before, strict=False)
+        ]
+        return super().concatenate(*renumbered)
 
 
 def sightings_of(

@@ -1,4 +1,4 @@
-"""How late are a sensor's stamps? Told by people who stand still while the robot turns.
+"""How late are a sensor's stamps? From people who stand still while the robot turns.
 
 A sensor whose stamps are late by t shows what was before. With the robot's turn rate w, the
 heading of somebody at p, seen from s, comes out in the fixed frame as
@@ -165,8 +165,8 @@ def stamp_offset(headings: Headings) -> StampOffset:
     if len(left) <= len(people) + 1 or not 0.0 < std_s <= _STD_MAX_S:
         raise CalibrationError(
             f"{len(left)} headings do not determine the offset of the stamps. Record for a "
-            "minute while the robot turns to and fro on its place, by half a radian a second or "
-            "more, before people who stand still with a hand up."
+            "minute while the robot turns left and right on the spot, at 0.5 rad/s or more, in "
+            "front of people who stand still with a hand up."
         )
     return StampOffset(offset_s, std_s, len(left))
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray
-from tracker.errors import ShapeError
+from tracker.containers.rows import Column, Rows
 from tracker.perception.regions import first_of_each
-from tracker.perception.rows import Rows, kept
 
 #: Points seen with less are taken for unknown; a guess between 0.3, usual for COCO's models, and
 #: MediaPipe's 0.5.
@@ -64,7 +65,7 @@ HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
 KNEES = [Joint.LEFT_KNEE, Joint.RIGHT_KNEE]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Bodies(Rows):
     """People found in one picture; row i of each array is the same person.
 
@@ -81,36 +82,16 @@ class Bodies(Rows):
         ShapeError: The arrays disagree in shape.
     """
 
-    points_px: FloatArray
-    visibility: FloatArray
+    points_px: Annotated[FloatArray, Column((17, 2))]
+    visibility: Annotated[FloatArray, Column((17,))]
     score: FloatArray
     age_s: FloatArray
-    alignment_px: FloatArray = None  # type: ignore[assignment]  # NaN takes its place
-
-    def __post_init__(self) -> None:
-        count = len(self.score)
-        if self.alignment_px is None:
-            object.__setattr__(self, "alignment_px", np.full((count, 2, 2), np.nan))
-        shapes = [np.shape(getattr(self, name)) for name in self.__slots__]
-        needed = [(count, len(Joint), 2), (count, len(Joint)), (count,), (count,), (count, 2, 2)]
-        if shapes != needed:
-            raise ShapeError(
-                f"Bodies disagree in shape: {shapes}; needed is (P, 17, 2) and so on."
-            )
-        for name in self.__slots__:
-            view = np.asarray(getattr(self, name), dtype=np.float64).view()
-            view.flags.writeable = False
-            object.__setattr__(self, name, view)
+    alignment_px: Annotated[FloatArray, Column((2, 2), missing=np.nan)] = None  # type: ignore[assignment]  # NaN takes its place
 
     @staticmethod
     def seen_now(points_px: FloatArray, visibility: FloatArray, score: FloatArray) -> Bodies:
         """Bodies of this very image."""
         return Bodies(points_px, visibility, score, np.zeros(len(score)))
-
-    @staticmethod
-    def none() -> Bodies:
-        """Nobody at all."""
-        return Bodies.seen_now(np.zeros((0, 17, 2)), np.zeros((0, 17)), np.zeros(0))
 
     def grown_older(self, passed_s: float) -> Bodies:
         """The same people, as long after."""
@@ -123,7 +104,7 @@ class Bodies(Rows):
         rise_px = self.points_px[:, SHOULDERS, 1] - self.points_px[:, WRISTS, 1]
         return np.asarray(seen & (rise_px > -_ABOUT_LEVEL * self.shoulder_px[:, None]))
 
-    @kept
+    @cached_property
     def is_visible(self) -> BoolArray:
         """Shape (P, 17): points that may be relied upon."""
         finite = np.isfinite(self.points_px).all(axis=-1)
@@ -137,7 +118,7 @@ class Bodies(Rows):
         seen = self.is_visible[:, joints].all(axis=1)
         return np.asarray(seen & (rise_px < _NOSE_RISE * self.shoulder_px))
 
-    @kept
+    @cached_property
     def torso_px(self) -> FloatArray:
         """Shape (P, 2): the middle of shoulders and hips, of the shoulders where no hip is seen.
 
@@ -146,7 +127,7 @@ class Bodies(Rows):
         shoulders, hips = self._shoulders_px, self._middle_of(HIPS)
         return np.where(np.isnan(hips), shoulders, (shoulders + hips) / 2)
 
-    @kept
+    @cached_property
     def shoulder_px(self) -> FloatArray:
         """Shape (P,): the shoulders' width, the yardstick of a body; NaN where one is missing.
 
@@ -170,7 +151,7 @@ class Bodies(Rows):
         share = (_KNEES_OF_STANDING - fall) / (_KNEES_OF_STANDING - _KNEES_OF_SEATED)
         return np.asarray(np.clip(share, 0.0, 1.0))
 
-    @kept
+    @cached_property
     def _shoulders_px(self) -> FloatArray:
         """Shape (P, 2): the middle of both shoulders, NaN where one is missing."""
         seen = self.is_visible

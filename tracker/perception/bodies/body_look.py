@@ -27,10 +27,10 @@ _NOBODY = Bodies.none()
 
 
 class BodyLook(Protocol):
-    """One look of a pose model: the one interface behind which any of them stands."""
+    """The interface that every pose model implements."""
 
     def windows(self, width: int, height: int) -> list[Window]:
-        """The parts of a picture of so many pixels in which it sees everybody."""
+        """The parts of a picture of this size that must be searched to see everybody."""
         ...
 
     def around(
@@ -107,7 +107,7 @@ class MediapipeLook:
         return self._believed(self._reader.read(bgr, found[is_new][:most]))
 
     def again(self, bgr: ImageArray, known: Bodies) -> Bodies:
-        """People known, read anew."""
+        """Update the poses of known people."""
         return self._believed(self._reader.read(bgr, regions_from_alignment(known.alignment_px)))
 
     def configure(self, config: Config) -> None:

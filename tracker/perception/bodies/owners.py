@@ -71,7 +71,7 @@ def find_owners(
 
 
 def sure_owners(hands: Hands, bodies: Bodies) -> IntArray:
-    """Whose hand is it beyond doubt? Rows of `bodies`, shape (H,); -1 where it is not sure."""
+    """The sure owner of each hand: rows of `bodies`, shape (H,); -1 where it is not sure."""
     owner = find_owners(hands, bodies, _SURE_WRIST_SHOULDERS)
     if len(bodies) == 0 or len(hands) == 0:
         return owner

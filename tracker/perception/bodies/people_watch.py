@@ -41,7 +41,7 @@ _UNOWNED_S, _IN_VAIN_S, _OWNER_S, _ARM_S, _MOVED_S, _STRIP_S = 0.05, 0.5, 0.5, 0
 
 @dataclass(slots=True)
 class _Question:
-    """A hand that was asked about: where, when, how often in vain."""
+    """A hand whose owner was searched: where, when, and how often without success."""
 
     wrist_px: FloatArray
     reach_px: float
@@ -161,7 +161,7 @@ class PeopleWatch:
         return np.asarray(known.age_s / period_s)
 
     def _strip_need(self, now_ns: float) -> tuple[float, int]:
-        """How overdue a look at the neediest strip is, and which that is."""
+        """The strip that is most overdue, and by how much."""
         if len(self._strips) == 0:
             return 0.0, 0
         is_watched = now_ns - self._moved_ns <= _WATCH_S * 1e9

@@ -50,7 +50,7 @@ class PoseFile:
         (self._input,) = session.get_inputs()
         if self._input.type not in _NUMBERS:
             raise ModelFileError(
-                f"{origin} wants {self._input.type} as its input; needed is one of "
+                f"{origin} needs {self._input.type} as input; expected one of "
                 f"{', '.join(_NUMBERS)}."
             )
         self.configure(config)
@@ -122,8 +122,8 @@ class PoseFile:
         ) as error:
             reason = str(error).splitlines()[0]
             raise ModelFileError(
-                f"{self._origin} looks like {self._layout.name} but does not answer like it "
-                f"({reason}); export it anew, for batches of one picture."
+                f"{self._origin} looks like {self._layout.name} but its output is different "
+                f"({reason}); export it again, for batches of one picture."
             ) from error
         points = np.where(np.isfinite(bodies.points_px), bodies.points_px, np.nan)
         return replace(bodies, points_px=points / per_px + (left, top))

@@ -1,4 +1,4 @@
-"""How does a pose model want its picture, and what do its numbers mean? Four usual layouts."""
+"""Input and output of pose models, in four usual layouts."""
 
 from __future__ import annotations
 
@@ -89,7 +89,8 @@ def recognize(origin: str, inputs: Shapes, outputs: Shapes) -> PoseLayout:
         for word, side in (("inputs", inputs), ("outputs", outputs))
     )
     raise ModelFileError(
-        f"{origin} has {found}: no layout of a pose model that is understood. Give `pose_model` a "
+        f"{origin} has {found}: this is not a supported layout of a pose model. Give "
+        f"`pose_model` a "
         f"file of {UNDERSTOOD}."
     )
 
@@ -109,7 +110,7 @@ def _layout_of(outputs: Shapes) -> PoseLayout | None:
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
-    """Whether a shape is as wanted, where both say something."""
+    """Whether a shape fits the expected one, where both are known."""
     return len(shape) == len(wanted) and all(
         size in (want, -1) or want is None for size, want in zip(shape, wanted, strict=True)
     )

@@ -1,1 +1,1 @@
-"""What does a hand say? Its shape in one image, and what that and its movement mean over time."""
+"""Which gesture does a hand show? By its shape in one image, and its movement over time."""

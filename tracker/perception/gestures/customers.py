@@ -1,4 +1,4 @@
-"""What does each customer say? The gesture of their hand, and for a moment after it was seen."""
+"""The gesture of each customer; it is kept for a moment after the hand was last seen."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What has one hand said of late? A belief about its sign, and what its movement adds.
+"""The gesture of one hand over time: filtered signs, and movement (wave, come, stop).
 
 - wave: an open, upright hand goes to and fro sideways, there and back and there again; a hand that
   calls may take its time for it;

@@ -1,4 +1,4 @@
-"""What does each hand of an image say, image after image, and which of them may call with it?"""
+"""The gesture of each hand from image to image, and which of them may call."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What would a dark or noisy picture show in good light? Brighter, and averaged where still.
+"""Brightens dark pictures, and averages noisy ones where nothing moves.
 
 The hand models know photos: in the light of a third of one, and under a noise of ten gray levels,
 they miss two small hands of five that they find in clear pictures.

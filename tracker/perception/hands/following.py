@@ -147,7 +147,7 @@ class HandFollower:
         return hands, rows
 
     def reset(self) -> None:
-        """Follow nobody any more."""
+        """Forget all hands."""
         self._regions = Regions.none()
         self._rows = np.zeros(0, dtype=np.int64)
         self._clearer.reset()
@@ -186,7 +186,7 @@ class HandFollower:
     def _read_again(
         self, bgr: ImageArray, hands: Landmarks, is_new: BoolArray, read: Regions, config: Config
     ) -> tuple[Landmarks, int]:
-        """Hands that are not quite believed in, read once more; and how many that were.
+        """Unsure hands, processed once more; and their number.
 
         New ones from where the reading puts them: palms of few pixels, and forearms, tell the size
         and turn of their hands but roughly. In a noisy picture also those that were followed or

@@ -5,19 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, FloatArray, Hands, ImageArray, PerceptionWork
+from tracker.containers import CameraImage, Hands, ImageArray, PerceptionWork
+from tracker.perception.detector import NO_HINTS, Hints
 from tracker.perception.hands.following import HandFollower
 from tracker.perception.hands.landmarks import LandmarkReader
 from tracker.perception.models import ModelStore
 from tracker.perception.models.sessions import open_session
-from tracker.perception.regions import Regions, regions_from_landmarks
+from tracker.perception.regions import regions_from_landmarks
 from tracker.perception.single_shot import SingleShot
 from tracker.perception.verdict.raise_rules import judge_raised, rule_refusals
 
 #: What the palm model sees of the whole picture and of a piece of it: squares of these sides. The
 #: second costs three quarters of the first, the model's own, and finds as much in tiles of 240 px.
 WHOLE_INPUT_PX, PIECE_INPUT_PX = 192, 160
-_NOWHERE, _NOBODY = np.zeros((0, 4)), np.zeros(0, dtype=bool)
+_NOBODY = np.zeros(0, dtype=bool)
 
 
 class HandFinder:
@@ -39,27 +40,7 @@ class HandFinder:
         self._store = store if store is not None else ModelStore()
         self._config = config
         self._follower = self._open(config)
-        self._expected_px = _NOWHERE
-        self._suggested = Regions.none()
-        self._spared = 0
         self._raised = _NOBODY
-        self._budget: int | None = None
-
-    def expect(self, boxes_px: FloatArray) -> None:
-        """Look into these boxes, shape (E, 4), first in the next image."""
-        self._expected_px = boxes_px
-
-    def suggest(self, landmarks_px: FloatArray) -> None:
-        """Look without a search whether hands are there in the next image; shape (G, 21, 2)."""
-        self._suggested = regions_from_landmarks(landmarks_px)
-
-    def spare(self, places: int) -> None:
-        """Search so many places less in the next image, down to one."""
-        self._spared = places
-
-    def set_budget(self, runs: int | None) -> None:
-        """How many model runs an image may take from now on; None is as configured."""
-        self._budget = runs
 
     @property
     def work(self) -> PerceptionWork:
@@ -71,17 +52,15 @@ class HandFinder:
         """The last image as the models saw it; None before the first."""
         return self._follower.seen
 
-    def find(self, image: CameraImage) -> Hands:
+    def find(self, image: CameraImage, hints: Hints = NO_HINTS) -> Hands:
         """Every known hand of the image, and those that the places searched in it hold.
 
         `downscale_factor` applies to the whole-frame search; pieces of the picture and landmarks
         are read from the full image, so that their accuracy does not depend on it.
         """
-        expected_px, self._expected_px = self._expected_px, _NOWHERE
-        suggested, self._suggested = self._suggested, Regions.none()
-        spared, self._spared = self._spared, 0
+        suggested = regions_from_landmarks(hints.suggested_px)
         found, rows = self._follower.step(
-            image, self._config, expected_px, self._budget, suggested, spared
+            image, self._config, hints.expected_px, hints.model_runs, suggested, hints.spared
         )
         size = (image.width, image.height)
         was_raised = np.append(self._raised, False)[rows]  # row -1 is new
@@ -100,7 +79,6 @@ class HandFinder:
         """Forget the hands of earlier images."""
         self._follower.reset()
         self._raised = _NOBODY
-        self._suggested = Regions.none()
 
     def configure(self, config: Config) -> None:
         """Take over changed parameters, from the next image on; reopens the models if it must.

@@ -5,26 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import cv2
 import numpy as np
 import onnxruntime
 
 from tracker.containers import FloatArray, ImageArray
+from tracker.containers.rows import Column, Rows
 from tracker.perception.models import ModelStore, model_to_run
 from tracker.perception.models.sessions import open_session
 from tracker.perception.pictures import cut_out
 from tracker.perception.regions import Regions, image_from_input
-from tracker.perception.rows import Rows
 
 INPUT_PX = 224
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Landmarks(Rows):
-    """What the landmark model says about regions; row i of each array is region i.
+    """Results of the landmark model; row i of each array is region i.
 
     Attributes:
         points_px: Shape (R, 21, 2): x to the right, y down, in the full image.
@@ -32,7 +32,7 @@ class Landmarks(Rows):
         right: Shape (R,): probability that it is a right hand, in a picture that is not mirrored.
     """
 
-    points_px: FloatArray
+    points_px: Annotated[FloatArray, Column((21, 2))]
     score: FloatArray
     right: FloatArray
 

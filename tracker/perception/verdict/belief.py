@@ -1,4 +1,4 @@
-"""Does this hand call, after all that was seen of it? A filter of two states, in log-odds."""
+"""Does this hand call, by all images so far? A filter with two states, in log-odds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What speaks for a call, and what against? A few quantities of each hand and of its owner's arm.
+"""Quantities for and against a call, of each hand and of its owner's arm.
 
 Each is a number of about -1 to 1 with a meaning that a person can check on the picture; one that
 was not seen is 0, and says nothing. `weights` says how much each counts.

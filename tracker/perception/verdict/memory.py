@@ -1,4 +1,4 @@
-"""Which hand of the last images is this, how did it move, and what is believed of it?"""
+"""Which hand of the last images is this, how did it move, and how probably does it call?"""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class RememberedHand:
         return self.log_odds
 
     def swing(self) -> float:
-        """How much the hand goes to and fro: 0 is still, or moves one way; 1 is a wave."""
+        """How much the hand moves back and forth: 0 is still, or one direction; 1 is a wave."""
         steps = np.diff([column for _, column in self.way]) / max(self.size_px, 1.0)
         steps = steps[np.abs(steps) > _STILL_HANDS]
         if np.count_nonzero(np.diff(np.sign(steps))) < _TURNS_MIN:
@@ -80,7 +80,7 @@ class HandMemory:
         self._hands: list[RememberedHand] = []
 
     def recognize(self, stamp_ns: int, hands: Hands) -> list[RememberedHand]:
-        """What is remembered of each hand of an image; of a new one, nothing but where it is."""
+        """The memory of each hand of an image; a new one has only its place."""
         kept = [
             item for item in self._hands if 0 <= stamp_ns - item.seen_ns <= _FORGET_AFTER_S * 1e9
         ]

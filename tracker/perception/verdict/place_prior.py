@@ -1,4 +1,4 @@
-"""Which places of the picture keep showing a call that is none? The bar is higher there.
+"""Places of the picture that always seem to call, such as posters; they need more evidence.
 
 A poster of a raised hand, a coat on a hook or a lamp calls for hours and never moves; people move
 their hand within seconds, and take it down within a minute.

@@ -84,7 +84,7 @@ def image_rule(
 def palm_rule(
     landmarks_px: FloatArray, rise_min: float | FloatArray, lean_max_rad: float | FloatArray
 ) -> tuple[BoolArray, FloatArray]:
-    """The same question at every distance: the rise in lengths of the palm.
+    """The rule `palm`, for every distance: the rise in palm lengths.
 
     Raised where (wrist.y - middle_tip.y) / |wrist - middle finger's root| > `rise_min` and the
     hand leans no farther than `lean_max_rad` to a side: an arm that swings down passes through a

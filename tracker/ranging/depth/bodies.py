@@ -71,7 +71,7 @@ def find_bodies(points: DepthPoints, config: Config) -> DepthBodies:
 def body_measurements(
     bodies: DepthBodies, is_free: BoolArray, off_s: float, config: Config
 ) -> Measurements:
-    """What bodies that no hand was claimed for say of people, seen from the depth camera.
+    """Measurements of bodies that own no raised hand, seen from the depth camera.
 
     Args:
         bodies: Of one depth image.

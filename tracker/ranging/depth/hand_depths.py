@@ -91,7 +91,7 @@ def hand_depths(
     fixed_from_camera: RigidTransform,
     config: Config,
 ) -> HandDepths:
-    """Ask the depth image how far each hand's owner is.
+    """Measure in the depth image how far each hand's owner is.
 
     Its points are looked at as the color camera would see them, so that it does not matter where
     the depth camera is, nor that it looked a moment earlier or later from a robot that turns.

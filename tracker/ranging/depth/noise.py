@@ -1,4 +1,4 @@
-"""How far may a range be off that a depth camera tells?"""
+"""How large is the range error of a depth camera?"""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from tracker.containers import FloatArray
 
 
 def depth_noise_m(range_m: FloatArray, config: Config) -> FloatArray:
-    """Standard deviation, which grows with the square of the range, as of stereo cameras.
+    """Standard deviation of the range, which grows with its square, as with stereo cameras.
 
-    A pixel of disparity is f b / z, so that an error of it moves the depth z by z^2 / (f b) times
-    as much: Gallup et al., "Variable baseline/resolution stereo", CVPR 2008, equation 2.
+    The disparity in pixels is f b / z. So an error of it changes the depth z by z^2 / (f b) times
+    that error: Gallup et al., "Variable baseline/resolution stereo", CVPR 2008, equation 2.
 
     Args:
         range_m: Shape (N,).

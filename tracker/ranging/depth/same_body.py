@@ -16,13 +16,13 @@ _AVERAGED = 2.0
 
 
 def are_near(xy_m: FloatArray, others_xy_m: FloatArray) -> BoolArray:
-    """Which places, shape (C, 2), others, shape (K, 2), tell of as well; shape (C,)."""
+    """Which places, shape (C, 2), are near one of the others, shape (K, 2); shape (C,)."""
     apart_m = np.linalg.norm(xy_m[:, None] - others_xy_m, axis=-1)
     return np.asarray((apart_m < _SAME_BODY_M).any(axis=1))
 
 
 def without_seen(claims: Measurements, bodies_xy_m: FloatArray, config: Config) -> Measurements:
-    """Leave out what the scan says of bodies whose torso the depth image shows more exactly.
+    """Leave out the scan's measurement of a body that the depth image measures more exactly.
 
     The scan shows legs. How these stand to the torso stays the same for as long as somebody sits,
     and does not average out, while the noise of depth does; so up to some range the torso counts

@@ -1,4 +1,4 @@
-"""What does a depth image show from above, at the height of bodies? As a scanner would have it.
+"""What does a depth image show from above, at the height of bodies? Like a laser scan.
 
 For each direction the nearest thing that is tall enough to be no stray reading, between the table
 tops and the top of people's heads. What reads a scan, reads this.

@@ -1,4 +1,4 @@
-"""What stands in the scan for so long that it must be furniture? Learnt, and unlearnt again.
+"""What has stood still so long that it must be furniture? Learned, and forgotten when it moves.
 
 A chair or a pillar is as wide as a leg. What has stood exactly still for long, and is no customer,
 sustains nobody. The place is free again once a beam has passed through it.
@@ -6,12 +6,13 @@ sustains nobody. The place is free again once a beam has passed through it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray, LocatedScan
+from tracker.containers.rows import Column, Rows
 from tracker.ranging.scan.beams import beam_index
 from tracker.ranging.scan.people import PersonClusters
 
@@ -79,7 +80,7 @@ class Background:
         ]
         is_new = distance.min(axis=0, initial=np.inf) >= STILL_M
         new = _Places.begin(clusters.xy_m[is_new], clusters.log_odds[is_new], scan.stamp_ns)
-        places = places.append(new)
+        places = _Places.concatenate(places, new)
         if len(places) > _PLACES_MAX:
             order = np.argsort(places.seen_ns, kind="stable")
             places = places[order[-_PLACES_MAX:]]
@@ -111,14 +112,14 @@ class Background:
         return np.asarray(-np.logaddexp(0.0, -log_odds))
 
     def spare(self, customers_xy_m: FloatArray, distance_m: float) -> None:
-        """A customer who stands still does not become background; what is one already stays."""
+        """A customer who stands still does not become background; old background stays."""
         places = self._places
         near = (_distances(places.xy_m, customers_xy_m) < distance_m).any(axis=1)
         stood_s = np.where(near & ~places.is_background, 0.0, places.stood_s)
         self._places = replace(places, stood_s=stood_s)
 
     def free(self, xy_m: FloatArray) -> None:
-        """A hand was raised there: whoever stands at these points is somebody."""
+        """A hand was raised there: these points are people, not background."""
         places = self._places
         is_near = (_distances(places.xy_m, xy_m) < STILL_M).any(axis=1)
         stood_s = np.where(is_near, 0.0, places.stood_s)
@@ -126,31 +127,17 @@ class Background:
         self._places = replace(places, stood_s=stood_s, is_background=is_background)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Places:
+@dataclass(frozen=True, eq=False)
+class _Places(Rows):
     """Row i of each array is one place."""
 
-    xy_m: FloatArray  # (K, 2), in the fixed frame
+    xy_m: Annotated[FloatArray, Column((2,))]  # (K, 2), in the fixed frame
     log_odds: FloatArray  # (K,): `PersonClusters.log_odds`, mean over the sightings
     stood_s: FloatArray  # (K,): how long something has been seen there
     sightings: IntArray  # (K,)
     seen_ns: IntArray  # (K,)
     through: IntArray  # (K,): scans in a row that looked through it
     is_background: BoolArray  # (K,)
-
-    def __len__(self) -> int:
-        return len(self.xy_m)
-
-    def __getitem__(self, rows: Any) -> _Places:
-        return _Places(*(getattr(self, item.name)[rows] for item in fields(self)))
-
-    def append(self, other: _Places) -> _Places:
-        return _Places(
-            *(
-                np.concatenate([getattr(self, item.name), getattr(other, item.name)])
-                for item in fields(self)
-            )
-        )
 
     @staticmethod
     def begin(xy_m: FloatArray, log_odds: FloatArray, stamp_ns: int) -> _Places:
@@ -159,10 +146,6 @@ class _Places:
         return _Places(
             xy_m, log_odds, np.zeros(count), one, one * stamp_ns, none, none.astype(bool)
         )
-
-    @staticmethod
-    def none() -> _Places:
-        return _Places.begin(np.zeros((0, 2)), np.zeros(0), 0)
 
 
 def _distances(a_m: FloatArray, b_m: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Where did each beam go? The laser's whole attitude, and its motion within the scan."""
+"""Where did each beam end? By the laser's roll, pitch, yaw, and its motion during the scan."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Does a scan speak of meters and radians, and of no more beams than a scanner has?
+"""Is a scan in meters and radians, with a plausible number of beams?
 
 Some drivers send millimeters or degrees. No planar scanner's returns are all farther than any
 room, and none turns twice in one scan: such numbers are in another unit, and are converted.
@@ -28,7 +28,7 @@ BEAMS_MAX = 32_768
 
 
 def mend_scan(scan: Scan) -> tuple[Scan, tuple[Note, ...]]:
-    """The scan in meters and radians, with a bounded number of beams; and what had to be done.
+    """The scan in meters and radians with a limited number of beams, and notes on the changes.
 
     What cannot be told for sure, as of a scan with few returns, is left as it came.
     """
@@ -36,12 +36,12 @@ def mend_scan(scan: Scan) -> tuple[Scan, tuple[Note, ...]]:
     if len(scan.ranges_m) > BEAMS_MAX:
         beams, step = len(scan.ranges_m), -(-len(scan.ranges_m) // BEAMS_MAX)
         scan = _every(scan, step)
-        text = f"the scan has {beams} beams; one in {step} is used, {BEAMS_MAX} at most"
+        text = f"the scan has {beams} beams; one in {step} is used, so at most {BEAMS_MAX}"
         notes.append(Note(NoteKind.SCAN_THINNED, text))
     span_rad = abs(scan.angle_increment_rad) * (len(scan.ranges_m) - 1)
     if _SPAN_MAX_RAD < span_rad <= 720.0:
         text = (
-            f"the scan's angles span {span_rad:.0f} rad: taken for degrees. The driver should "
+            f"the scan's angles span {span_rad:.0f} rad: treated as degrees. The driver should "
             "send radians (REP 103)"
         )
         notes.append(Note(NoteKind.SCAN_IN_DEGREES, text))
@@ -53,7 +53,8 @@ def mend_scan(scan: Scan) -> tuple[Scan, tuple[Note, ...]]:
     if _is_in_millimeters(scan.ranges_m):
         text = (
             "the scan's ranges are hundreds of meters and more, with a range_max of "
-            f"{scan.range_max_m:g}: taken for millimeters. The driver should send meters (REP 103)"
+            f"{scan.range_max_m:g}: treated as millimeters. The driver should send meters (REP "
+            "103)"
         )
         notes.append(Note(NoteKind.SCAN_IN_MILLIMETERS, text))
         scan = _from_millimeters(scan)

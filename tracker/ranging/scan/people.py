@@ -8,10 +8,12 @@ between two chairs.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from tracker.containers import BoolArray, FloatArray, IntArray, LocatedScan
+from tracker.containers.rows import Column, Rows
 from tracker.ranging.scan.room_map import RoomMap
 from tracker.ranging.scan.segments import Segments, find_segments
 
@@ -35,8 +37,8 @@ _LOG_ODDS_LEGS, _LOG_ODDS_BODY, _LOG_ODDS_LEG, _LOG_ODDS_SLIM = 1.14, -0.73, -0.
 _SEGMENTS_MAX = 500
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PersonClusters:
+@dataclass(frozen=True, eq=False)
+class PersonClusters(Rows):
     """Person-sized things of one scan; row i of each array is the same one.
 
     Attributes:
@@ -47,13 +49,10 @@ class PersonClusters:
             person, by what is known of the place; 0 where nothing is.
     """
 
-    xy_m: FloatArray
+    xy_m: Annotated[FloatArray, Column((2,))]
     width_m: FloatArray
     legs: IntArray
     furniture_log_odds: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.xy_m)
 
     @property
     def is_slim(self) -> BoolArray:
@@ -69,13 +68,6 @@ class PersonClusters:
             _LOG_ODDS_LEG,
         )
         return np.asarray(by_shape - self.furniture_log_odds)
-
-    @staticmethod
-    def none() -> PersonClusters:
-        """Nobody."""
-        return PersonClusters(
-            np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros(0)
-        )
 
 
 def find_people(
@@ -131,7 +123,7 @@ def _distance_m(
 
 
 def _is_person_sized(found: Segments, leg_width_min_m: float, body_width_m: float) -> BoolArray:
-    """From a slim leg to a body, and no board.
+    """Whether a segment is as wide as a leg or a body, and not flat like a board.
 
     Two beams show a leg only where they lie as far apart as a trouser leg is wide.
     """
@@ -144,7 +136,7 @@ def _is_person_sized(found: Segments, leg_width_min_m: float, body_width_m: floa
 
 
 def _farthest_m(range_m: FloatArray) -> float:
-    """Range of the farthest thing that is looked at: no room shows more people than the limit."""
+    """Largest range that is searched, so that the number of people stays limited."""
     return float(np.sort(range_m)[_SEGMENTS_MAX - 1]) if len(range_m) > _SEGMENTS_MAX else np.inf
 
 

@@ -1,4 +1,4 @@
-"""What stands here by the map? How far each point is from the nearest occupied cell."""
+"""Is there furniture on the map? The distance of points to the nearest occupied cell."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NEAR_ODDS, _FAR_ODDS = 20.0, 0.7
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoomMap:
-    """A map, made ready for questions. Made by `RoomMap.of`, once for each map.
+    """A map with its distances, computed once by `RoomMap.of`.
 
     Attributes:
         distances_m: Shape (rows, columns), float32: from the middle of each cell to that of the

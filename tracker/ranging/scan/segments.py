@@ -1,4 +1,4 @@
-"""Which beams in a row met the same thing, and what shape does it show?"""
+"""Which neighboring beams hit the same thing, and what is its shape?"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How are messages brought into order that lie in blocks? With few of these in memory at once."""
+"""How are messages in blocks sorted by time, with few blocks in memory?"""
 
 from __future__ import annotations
 
@@ -103,6 +103,27 @@ def placed(blocks: list[Block], first_ns: int, last_ns: int) -> list[Block]:
             before_ns = block.start_ns
         rows.append((before_ns, block.offset, block._replace(start_ns=before_ns)))
     return [block for _, _, block in sorted(rows, key=lambda row: row[:2])]
+
+
+def damage_of(
+    lost_at: list[int], is_finished: bool, blocks: list[Block], first_ns: int, last_ns: int
+) -> Damage:
+    """What a walk over the file has found out already.
+
+    Args:
+        lost_at: Offsets of records that make no sense.
+        is_finished: The file has its end.
+        blocks: From `placed`.
+        first_ns: First log time of the recording.
+        last_ns: Last.
+    """
+    damage = Damage()
+    for offset in lost_at:
+        before = [block.end_ns for block in blocks if block.offset < offset]
+        damage.add(max(before, default=first_ns), "records are damaged")
+    if not is_finished:
+        damage.cut(last_ns)
+    return damage
 
 
 def in_order(

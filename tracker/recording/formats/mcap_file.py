@@ -9,9 +9,7 @@ from zlib import crc32
 
 from mcap.opcode import Opcode
 
-from tracker.messages import Event, decode
-from tracker.recording.formats.blocks import Block, Part, check_count, in_order, placed
-from tracker.recording.formats.damage import Damage
+from tracker.recording.formats.blocks import Block, Part, check_count, damage_of, in_order, placed
 from tracker.recording.formats.mcap_layout import HEAD, MESSAGE, McapLayout
 from tracker.recording.formats.unpacking import DamagedError, unpack, unpack_message
 from tracker.recording.sources import RawMessage, TopicInfo, open_bytes, topics_of, unreadable
@@ -53,11 +51,14 @@ class McapSource:
     def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
         """As `Source.messages`."""
         wanted = {key for key, item in self._layout.channels.items() if item.topic in topics}
-        damage, read = self._damage(), Counter[str]()
+        layout, read = self._layout, Counter[str]()
+        damage = damage_of(
+            layout.damages, layout.is_finished, self._placed, self.start_ns, self.end_ns
+        )
         for part in in_order(self._blocks(wanted), self._parts, damage):
             if part.channel not in wanted:
                 if part.channel not in self._layout.channels:
-                    damage.add(part.log_ns, "a message is of no known topic")
+                    damage.add(part.log_ns, "a message belongs to no known topic")
                 continue
             try:
                 data = unpack_message(part.data)
@@ -69,18 +70,6 @@ class McapSource:
             yield RawMessage(topic, type_name, part.log_ns, data)
         counted = {topic: info.count for topic, info in self.topics.items() if topic in topics}
         damage.tell(self._path, self.start_ns, counted, read)
-
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """As `Source.read`."""
-        return decode(
-            message.type_name,
-            message.data,
-            is_static=is_static,
-            max_pixels=max_pixels,
-            is_depth=is_depth,
-        )
 
     def close(self) -> None:
         """As `Source.close`."""
@@ -126,15 +115,6 @@ class McapSource:
             block for block in self._placed if block.channels is None or block.channels & wanted
         ]
 
-    def _damage(self) -> Damage:
-        damage = Damage()
-        for offset in self._layout.damages:
-            before = [block.end_ns for block in self._placed if block.offset < offset]
-            damage.add(max(before, default=self.start_ns), "records are damaged")
-        if not self._layout.is_finished:
-            damage.cut(self.end_ns)
-        return damage
-
     def _parts(self, block: Block) -> list[Part]:
         """The messages of a block; what it defines goes into the layout.
 
@@ -150,7 +130,7 @@ class McapSource:
         while end + HEAD.size <= len(data):
             opcode, length = HEAD.unpack_from(data, end)
             if not opcode:
-                raise DamagedError("a chunk holds what is no record")
+                raise DamagedError("a chunk contains something that is not a record")
             check_count(count := count + 1)
             body = end + HEAD.size
             end = body + length

@@ -13,11 +13,10 @@ from rosbags.typesys.store import Typestore
 from tracker.errors import RecordingError
 from tracker.messages import Event, events_from_message
 from tracker.messages.types import MALFORMED, TF_MESSAGE, TF_MESSAGE_ROS1
-from tracker.recording.formats.blocks import Block, Part, check_count, in_order, placed
-from tracker.recording.formats.damage import Damage
+from tracker.recording.formats.blocks import Block, Part, check_count, damage_of, in_order, placed
 from tracker.recording.formats.ros1_layout import Ros1Layout, read_record
 from tracker.recording.formats.unpacking import DamagedError, unpack
-from tracker.recording.sources import RawMessage, open_bytes, topics_of, unreadable
+from tracker.recording.sources import RawMessage, Reading, open_bytes, topics_of, unreadable
 
 _REMEDY = "Is it a ROS 1 bag? If its recording was cut off, repair it with `rosbag reindex`."
 _MESSAGE, _CONNECTION = 2, 7
@@ -56,7 +55,10 @@ class Ros1Source:
         """As `Source.messages`."""
         layout = self._layout
         wanted = {key for key, (topic, _) in layout.connections.items() if topic in topics}
-        damage, read = self._damage(), Counter[str]()
+        read = Counter[str]()
+        damage = damage_of(
+            layout.damages, layout.is_finished, self._blocks, self.start_ns, self.end_ns
+        )
         blocks = [
             block for block in self._blocks if block.channels is None or block.channels & wanted
         ]
@@ -64,24 +66,9 @@ class Ros1Source:
             if part.channel in wanted:
                 topic, type_name = layout.connections[part.channel]
                 read[topic] += 1
-                yield RawMessage(topic, type_name, part.log_ns, bytes(part.data))
+                yield RawMessage(topic, type_name, part.log_ns, bytes(part.data), _read)
         counted = {topic: info.count for topic, info in self.topics.items() if topic in topics}
         damage.tell(self._path, self.start_ns, counted, read)
-
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """As `Source.read`."""
-        try:
-            said = _typestore().deserialize_ros1(message.data, message.type_name)
-        except MALFORMED as error:
-            raise RecordingError(
-                f"{len(message.data)} bytes came as ROS 1 {message.type_name}; they do not hold "
-                f"one ({error})."
-            ) from error
-        return events_from_message(
-            message.type_name, said, is_static=is_static, max_pixels=max_pixels, is_depth=is_depth
-        )
 
     def close(self) -> None:
         """As `Source.close`."""
@@ -109,15 +96,6 @@ class Ros1Source:
             found.append(block)
         return found, {key: max(counts[key], layout.counts.get(key, 0)) for key in counts}
 
-    def _damage(self) -> Damage:
-        damage = Damage()
-        for offset in self._layout.damages:
-            before = [block.end_ns for block in self._blocks if block.offset < offset]
-            damage.add(max(before, default=self.start_ns), "records are damaged")
-        if not self._layout.is_finished:
-            damage.cut(self.end_ns)
-        return damage
-
     def _parts(self, block: Block) -> list[Part]:
         """The messages of a block; connections in it go into the layout.
 
@@ -140,6 +118,17 @@ class Ros1Source:
         if data and not offset:
             raise DamagedError("a chunk holds no records")
         return found
+
+
+def _read(message: RawMessage, how: Reading) -> list[Event]:
+    try:
+        said = _typestore().deserialize_ros1(message.data, message.type_name)
+    except MALFORMED as error:
+        raise RecordingError(
+            f"{len(message.data)} bytes came as ROS 1 {message.type_name}; they do not hold "
+            f"one ({error})."
+        ) from error
+    return events_from_message(message.type_name, said, **how._asdict())
 
 
 @lru_cache(maxsize=1)

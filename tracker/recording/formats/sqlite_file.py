@@ -10,7 +10,6 @@ from pathlib import Path
 from urllib.parse import quote
 
 from tracker.errors import RecordingError
-from tracker.messages import Event, decode
 from tracker.recording.formats.damage import Damage
 from tracker.recording.formats.unpacking import DamagedError, unpack_message
 from tracker.recording.sources import RawMessage, topics_of, unreadable
@@ -78,18 +77,6 @@ class SqliteSource:
         counted = {topic: info.count for topic, info in self.topics.items() if topic in topics}
         damage.tell(self._path, self.start_ns, counted, read)
 
-    def read(
-        self, message: RawMessage, *, is_static: bool, max_pixels: int, is_depth: bool = False
-    ) -> list[Event]:
-        """As `Source.read`."""
-        return decode(
-            message.type_name,
-            message.data,
-            is_static=is_static,
-            max_pixels=max_pixels,
-            is_depth=is_depth,
-        )
-
     def close(self) -> None:
         """As `Source.close`."""
         self._database.close()
@@ -107,7 +94,7 @@ class SqliteSource:
                 found.append((log_ns, row, key))
                 counts[key] += 1
             else:
-                self._note("a row makes no sense")
+                self._note("a row is invalid")
         self._rows = sorted(found)
         if self._damages and not found:
             raise unreadable(self._path, self._damages[0][1], _REMEDY)
@@ -162,7 +149,7 @@ def _notes(path: Path) -> list[str]:
     with suppress(OSError):
         if log.stat().st_size:
             return [
-                f"{path}: what its recorder wrote last is still in {log.name} and is not read; "
+                f"{path}: its last messages are still in {log.name} and are not read; "
                 f"`sqlite3 {path.name} 'PRAGMA wal_checkpoint'` moves it into the database."
             ]
     return []

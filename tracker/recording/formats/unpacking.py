@@ -50,9 +50,9 @@ def unpack(data: bytes, compression: str, size: int | None = None) -> bytes:
     try:
         unpacked = _unpack(data, compression, most)
     except (zstandard.ZstdError, RuntimeError, OSError, ValueError, EOFError) as error:
-        raise DamagedError(f"a chunk cannot be unpacked: {error}") from error
+        raise DamagedError(f"a chunk cannot be decompressed: {error}") from error
     if len(unpacked) > most or (size is not None and len(unpacked) != size):
-        raise DamagedError(f"a chunk of {most} bytes unpacks to others")
+        raise DamagedError(f"a chunk does not decompress to the {most} bytes that it claims")
     return unpacked
 
 
@@ -60,7 +60,7 @@ def unpack_message(data: bytes | memoryview) -> bytes:
     """A message as its sender wrote it: rosbag2 may pack each alone, and CDR begins otherwise.
 
     Raises:
-        DamagedError: It is packed and cannot be unpacked.
+        DamagedError: It is packed and cannot be decompressed.
     """
     return unpack(bytes(data), "zstd") if data[:4] == ZSTD_MAGIC else bytes(data)
 
@@ -76,7 +76,7 @@ def _unpack(data: bytes, compression: str, most: int) -> bytes:
         return bytes(lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most + 1))
     if compression == "bz2":
         return bz2.BZ2Decompressor().decompress(data, max_length=most + 1)
-    raise DamagedError(f"a chunk is packed by {compression!r}; known are lz4, zstd and bz2")
+    raise DamagedError(f"a chunk is compressed with {compression!r}; known are lz4, zstd and bz2")
 
 
 @contextmanager
@@ -92,7 +92,7 @@ def unpacked_file(path: Path) -> Iterator[Path]:
             with path.open("rb") as packed, target.open("wb") as file:
                 _copy(path, packed, file)
         except OSError as error:
-            raise RecordingError(f"{path}: cannot be unpacked ({error.strerror}).") from error
+            raise RecordingError(f"{path}: cannot be decompressed ({error.strerror}).") from error
         yield target
 
 

@@ -1,4 +1,4 @@
-"""Which photos went wrong, and where? Small pictures with the missed and the false, in rows."""
+"""Contact sheet of the photos with missed hands and false raises."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where does detection succeed, and what fools it? One picture of an evaluation."""
+"""One plot of an evaluation: recall by distance and other factors, and false raises."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _draw_false(axes: Axes, study: DetectionStudy) -> None:
     axes.axvline(1.0, color=FADED, linewidth=0.8)
     axes.xaxis.set_major_formatter(lambda rate, _: f"{rate:g}")
     axes.set_yticks(at, [_false_label(row) for row in rows])
-    axes.set(xlabel="false raises an hour", title="invented while nobody calls")
+    axes.set(xlabel="false raises an hour", title="false raises while nobody calls (0 is perfect)")
     axes.set(xlim=(-0.1, None), ylim=(len(rows) - 0.5, -0.5))
     _plain(axes)
 

@@ -50,7 +50,10 @@ def recall_table(study: DetectionStudy) -> Table:
             table.add_row(factor if place == 0 else "", *_recall_cells(row))
         table.add_section()
     table.add_row("all", *_recall_cells(recall_of("", study.episodes)))
-    table.caption = "images: median until found; error: of the landmarks, median, in hand lengths"
+    table.caption = (
+        "recall: share of raised hands that were found, 100 % is perfect; images: median number "
+        "until found; error: median of the landmarks, in hand lengths, less is better"
+    )
     table.caption_justify = "left"
     return table
 
@@ -60,7 +63,7 @@ def false_table(study: DetectionStudy) -> Table:
     from rich.table import Table
 
     table = Table(
-        title=f"False raises in {counted(len(study.minutes), 'minute')} in which nobody calls",
+        title=f"False raises in {counted(len(study.minutes), 'minute')} without a call",
         title_justify="left",
     )
     for name in ("by", "level"):
@@ -76,7 +79,10 @@ def false_table(study: DetectionStudy) -> Table:
             table.add_row(name if place == 0 else "", *_false_cells(row))
         table.add_section()
     beside = sum(item.score.false_raises for item in study.episodes)
-    table.caption = f"besides: {beside} in the episodes with a raised hand"
+    table.caption = (
+        "false: raises while nobody calls, 0 is perfect; "
+        f"besides these, {beside} in the episodes with a raised hand"
+    )
     table.caption_justify = "left"
     return table
 

@@ -23,7 +23,7 @@ def photo_tables(study: PhotoStudy) -> tuple[Table, ...]:
     """One line per photo with something missed or invented, then the totals."""
     from rich.table import Table
 
-    photos = Table(title="Photos with something missed or invented", title_justify="left")
+    photos = Table(title="Photos with a missed hand or a false raise", title_justify="left")
     photos.add_column("photo")
     for name in ("raised", "found", "false"):
         photos.add_column(name, justify="right")

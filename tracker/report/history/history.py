@@ -1,4 +1,4 @@
-"""What must be remembered of a whole recording for its pictures and its summary?
+"""What is kept of a whole recording for its pictures and its summary?
 
 Little: memory stays bounded however long the recording is. Paths are thinned, scans fall into a
 grid of fixed size, and beyond `PEOPLE_KEPT` whoever was last seen longest ago leaves (tracks.csv
@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tracker.config import Config
 from tracker.containers import FloatArray, FrameResult, Refusal, Tracks
 from tracker.geometry import worst_std
 from tracker.gesture import Gesture
@@ -87,6 +88,8 @@ class Person:
         hands: Each time the hand was up, in order of time.
         selected: Each time this person was the one served, in order of time.
         said: What the hand said, in order of time.
+        states: Rows of seconds since the start, existence (a probability), and 1 where the
+            estimate was recent and certain enough to drive to, else 0.
     """
 
     id: int
@@ -97,13 +100,14 @@ class Person:
     hands: list[RaisedHand] = field(default_factory=list)
     selected: list[Span] = field(default_factory=list)
     said: list[SaidByHand] = field(default_factory=list)
+    states: Trail = field(default_factory=lambda: Trail(3, capacity=128))
 
 
 class History:
     """Collects from every processed image.
 
     Args:
-        start_ns: Stamp that counts as second 0; the first image's where None.
+        config: `pose_max_std_m` and `pose_max_age_s` say what is certain and recent.
 
     Attributes:
         people: Confirmed customers by id, in the order they came.
@@ -113,11 +117,12 @@ class History:
         hands_not_raised: For each reason, the images in which a hand was not raised for it.
         camera_path: Rows of x_m, y_m, yaw_rad of the camera in the fixed frame.
         walls: Where scans met something.
-        start_ns: Stamp of second 0, or None before the first image.
+        start_ns: Stamp of second 0, the first image's; None before it.
         end_ns: Stamp of the newest image, or None before the first.
     """
 
-    def __init__(self, start_ns: int | None = None) -> None:
+    def __init__(self, config: Config | None = None) -> None:
+        self._config = config or Config()
         self.people: dict[int, Person] = {}
         self.people_dropped = 0
         self.frames_processed = 0
@@ -127,7 +132,7 @@ class History:
         self.hands_not_raised: Counter[Refusal] = Counter()
         self.camera_path = Trail(3, capacity=2048)
         self.walls = HitGrid()
-        self.start_ns = start_ns
+        self.start_ns: int | None = None
         self.end_ns: int | None = None
         self._duration_ns = 0
         self._scan_stamp_ns = -1
@@ -181,8 +186,10 @@ class History:
         now_ns = tracks.stamp_ns
         camera = self.camera_path.rows
         camera_xy_m = camera[-1, :2].copy() if len(camera) else np.zeros(2)
-        is_placed = worst_std(tracks.covariance[:, :2, :2]) <= PLACED_STD_M
-        is_placed &= is_known
+        worst_m = worst_std(tracks.covariance[:, :2, :2])
+        is_placed = (worst_m <= PLACED_STD_M) & is_known
+        is_fresh = worst_m <= self._config.pose_max_std_m
+        is_fresh &= tracks.unseen_s <= self._config.pose_max_age_s
         for row, track_id in enumerate(tracks.id.tolist()):
             xy = tracks.mean[row, :2]
             person = self.people.get(track_id)
@@ -190,6 +197,8 @@ class History:
                 began_ns = now_ns - round(float(tracks.age_s[row]) * 1e9)
                 person = self.people[track_id] = Person(track_id, began_ns, now_ns, now_ns)
             person.last_seen_ns = now_ns
+            existence, fresh = float(tracks.existence[row]), float(is_fresh[row])
+            person.states.append(self.seconds(now_ns), existence, fresh)
             if is_placed[row]:
                 person.path.append(float(xy[0]), float(xy[1]))
             if tracks.raised[row]:

@@ -1,4 +1,4 @@
-"""Where have scans met something? A map-like backdrop for pictures, of fixed size in memory."""
+"""Where did scans hit something? A map-like background for plots, of fixed size in memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How is a path of any length kept in little memory? By halving it whenever it grows too long."""
+"""A path of any length in little memory: it is halved whenever it grows too long."""
 
 from __future__ import annotations
 

@@ -21,6 +21,7 @@ from tracker.evaluation.metrics.raised_hands.episode_report import EpisodeReport
 from tracker.report.history.history import History, Person, RaisedHand
 from tracker.report.palette import FADED, INK, LIT, PAPER, ROBOT, WALL, person_color
 from tracker.report.plots.hand_icon import HAND
+from tracker.report.video.birdseye import FIELD_OF_VIEW_RAD
 
 _SIGMAS_95 = 2.448  # square root of chi-square's 95 % quantile for two dimensions
 _GLANCES = 14  # fields of view drawn over each other, so that often-seen places shine brighter
@@ -37,7 +38,6 @@ def draw_floor_plan(
     shown: Collection[int],
     truth: EpisodeReport | None,
     corners_m: tuple[FloatArray, FloatArray],
-    field_of_view_rad: float,
 ) -> None:
     """Draw the room from above, in meters of the fixed frame.
 
@@ -47,7 +47,6 @@ def draw_floor_plan(
         shown: Ids of people whose hands and names are drawn; of others there is the path.
         truth: A comparison with the truth, whose places become rings.
         corners_m: Lower left and upper right of the view, shape (2,) each.
-        field_of_view_rad: The camera's, from edge to edge.
     """
     low, high = corners_m
     axes.set_facecolor(PAPER)
@@ -55,7 +54,7 @@ def draw_floor_plan(
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal")
     size_m = float(np.min(high - low))
-    _draw_camera(axes, history, 0.55 * size_m, float(np.degrees(field_of_view_rad)))
+    _draw_camera(axes, history, 0.55 * size_m)
     _draw_walls(axes, history)
     if truth is not None and truth.episodes:
         x, y = np.array([row.xy_m for row in truth.episodes]).T
@@ -94,14 +93,15 @@ def _draw_walls(axes: Axes, history: History) -> None:
     )
 
 
-def _draw_camera(axes: Axes, history: History, reach_m: float, angle_deg: float) -> None:
+def _draw_camera(axes: Axes, history: History, reach_m: float) -> None:
     path = history.camera_path.rows
     if len(path) == 0:
         return
+    half_deg = float(np.degrees(FIELD_OF_VIEW_RAD)) / 2
 
     def field_of_view(row: FloatArray, **style: Any) -> None:
         x, y, heading = float(row[0]), float(row[1]), float(np.degrees(row[2]))
-        sides = (heading - angle_deg / 2, heading + angle_deg / 2)
+        sides = (heading - half_deg, heading + half_deg)
         axes.add_patch(Wedge((x, y), reach_m, *sides, **style))
 
     for row in np.linspace(0, len(path) - 1, min(len(path), _GLANCES)).astype(int):

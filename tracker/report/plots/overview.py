@@ -1,4 +1,4 @@
-"""What happened in this recording, in one picture? The room from above, and below it the time."""
+"""One picture of a recording: the room from above, and a time line below it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from tracker.report.history.history import History
 from tracker.report.palette import PAPER
 from tracker.report.plots.floor_plan import draw_floor_plan
 from tracker.report.plots.timeline import draw_timeline, lanes_of
-from tracker.report.video.birdseye import FIELD_OF_VIEW_RAD
 
 _WIDTH_IN = 10.0
 #: Room for the key beside the floor plan, and how large that is.
@@ -30,8 +29,6 @@ def draw_overview(
     history: History,
     path: str | Path,
     truth: EpisodeReport | None = None,
-    *,
-    field_of_view_rad: float = FIELD_OF_VIEW_RAD,
 ) -> None:
     """Draw a recording from above, in meters of the fixed frame, over its timeline.
 
@@ -39,7 +36,6 @@ def draw_overview(
         history: What was collected while the recording streamed.
         path: The .png file, replaced if it exists.
         truth: A comparison with the truth, whose places become rings and whose hands hollow bars.
-        field_of_view_rad: The camera's, from edge to edge.
 
     Raises:
         RecordingError: The file cannot be written.
@@ -60,7 +56,7 @@ def draw_overview(
     room = figure.add_axes(at)
     time = figure.add_axes((left, 0.5 / figure_high, width, time_high / figure_high))
     shown = {lane.person.id for lane in lanes if lane.person}
-    draw_floor_plan(room, history, shown, truth, (low, high), field_of_view_rad)
+    draw_floor_plan(room, history, shown, truth, (low, high))
     draw_timeline(time, history, lanes)
     path = Path(path)
     with writing_into(path.parent) as new:

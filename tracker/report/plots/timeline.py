@@ -1,4 +1,8 @@
-"""Who had a hand up when? One lane per person, truth as hollow bars above."""
+"""Raised, exists, fresh, served: who was what when? One lane per person, truth above.
+
+Existence is a curve over the height of the bar that says when the hand was up; a thin bar below
+says when the estimate was fresh enough to drive to.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from tracker.containers import BoolArray, FloatArray
 from tracker.evaluation.metrics.raised_hands.episode_report import EpisodeReport, EpisodeRow
 from tracker.report.history.history import History, Person
 from tracker.report.palette import FADED, INK, LIT, PAPER, person_color
@@ -16,6 +21,7 @@ from tracker.report.palette import FADED, INK, LIT, PAPER, person_color
 _LANES = 20
 _BAR = 0.36
 _TRUTH_BAR = 0.13
+_FRESH = "#4aa3a0"
 #: A gesture is named that lasts for so much of the recording; less has no room for a word.
 _WORD = 0.04
 
@@ -111,15 +117,22 @@ def _draw_lane(
     if person is None:
         return
     color = person_color(person.id)
-    began, confirmed, last = (
-        place(stamp, stamp)[0]
-        for stamp in (person.first_seen_ns, person.confirmed_ns, person.last_seen_ns)
+    began, confirmed = (
+        place(stamp, stamp)[0] for stamp in (person.first_seen_ns, person.confirmed_ns)
     )
     axes.plot([began, confirmed], [y, y], color=color, lw=1.4, ls=(0, (1, 1.2)), zorder=3)
-    axes.plot([confirmed, last], [y, y], color=color, lw=1.4, alpha=0.6, zorder=3)
+    at_s, existence, is_fresh = person.states.rows.T
+    low = y - _BAR / 2
+    exists = low + _BAR * existence
+    axes.fill_between(at_s / per_unit, low, exists, color=color, alpha=0.15, lw=0, zorder=1)
+    axes.plot(at_s / per_unit, exists, color=INK, lw=0.9, alpha=0.8, zorder=5.5)
+    axes.broken_barh(
+        _runs(at_s / per_unit, is_fresh > 0.5), (low - 0.13, 0.08), facecolors=_FRESH,
+        linewidths=0, zorder=4,
+    )  # fmt: skip
     axes.broken_barh(
         [place(span.start_ns, span.end_ns) for span in person.selected],
-        (y - _BAR / 2 - 0.12, _BAR + 0.17), facecolors=LIT, alpha=0.75, linewidths=0, zorder=2,
+        (y - _BAR / 2 - 0.05, _BAR + 0.1), facecolors=LIT, alpha=0.75, linewidths=0, zorder=2,
     )  # fmt: skip
     axes.broken_barh(
         [place(hand.start_ns, hand.end_ns) for hand in person.hands],
@@ -135,11 +148,19 @@ def _draw_lane(
             )  # fmt: skip
 
 
+def _runs(at: FloatArray, is_on: BoolArray) -> list[tuple[float, float]]:
+    """Starts and lengths of the times in which something held, from row to row."""
+    edges = np.flatnonzero(np.diff(np.r_[False, is_on, False].astype(int)))
+    stops = np.minimum(edges[1::2], len(at) - 1)
+    return [(float(at[a]), float(at[b] - at[a])) for a, b in zip(edges[::2], stops, strict=True)]
+
+
 def _draw_legend(axes: Axes, history: History, lanes: list[Lane]) -> None:
     handles: list[Patch | Line2D] = [
         Line2D([], [], color=FADED, lw=1.4, ls=(0, (1, 1.2)), label="seen, has not called yet"),
-        Line2D([], [], color=FADED, lw=1.4, label="customer"),
+        Line2D([], [], color=INK, lw=0.9, alpha=0.8, label="exists (0 to 1)"),
         Patch(fc=FADED, ec="none", label="hand up"),
+        Patch(fc=_FRESH, ec="none", label="fresh"),
         Patch(fc=LIT, ec="none", alpha=0.75, label="served"),
     ]
     if any(lane.truth for lane in lanes):

@@ -1,4 +1,4 @@
-"""Which pictures tell a recording? Those in which a hand has just been seen up, or any at all."""
+"""Chooses pictures of a recording for its page: those in which a hand has just gone up."""
 
 from __future__ import annotations
 

@@ -10,10 +10,7 @@ from tracker.config import Config
 from tracker.containers import CameraImage, FrameResult
 from tracker.evaluation.metrics.raised_hands.episode_report import EpisodeReport
 from tracker.report.history.history import History, Person
-from tracker.report.history.states import States
 from tracker.report.page import Facts, Gallery, Page, Part, Picture, Section, Table, Text
-from tracker.report.plots.state_timeline import draw_state_timeline
-from tracker.report.plots.trail_map import draw_trail_map
 from tracker.report.provenance import provenance_section, settings_section
 from tracker.report.replay.episode_table import episode_table
 from tracker.report.replay.moments import Moments
@@ -33,13 +30,11 @@ class ReplayReport:
 
     def __init__(self, config: Config) -> None:
         self._config = config
-        self._states = States(config)
         self._moments = Moments(config)
         self._times = StageTimes()
 
     def watch(self, image: CameraImage, result: FrameResult, busy_s: float) -> None:
         """Take in an image, what it led to, and how long the pipeline took for it."""
-        self._states.write(result)
         self._moments.write(image, result)
         self._times.write(result, busy_s)
 
@@ -71,23 +66,15 @@ class ReplayReport:
         if episodes is not None:
             people.append(Table.from_rich(episode_table(episodes)))
         picture = Picture(
-            overview.read_bytes(), "image/png", "Where hands were raised, and below it when."
-        )
-        trails = Picture.plot(
-            draw_trail_map(history, self._states),
-            "Where everybody was followed, from above, with 2-sigma ellipses of the position.",
-            "png",
-        )
-        timeline = Picture.plot(
-            draw_state_timeline(history, self._states),
-            "Each person's existence (a probability), raised hand, fresh pose, and service.",
+            overview.read_bytes(),
+            "image/png",
+            "Where hands were raised, and below it when; each person's existence (a probability), "
+            "fresh pose, and service.",
         )
         sections = (
             Section("In short", (self._headline(history, episodes), *_trouble(problems))),
-            Section("Overview", (picture,)),
+            Section("Map and time line", (picture,)),
             Section("People", tuple(people) or (Text(("Nobody was confirmed.",)),)),
-            Section("Map", (trails,)),
-            Section("Time line", (timeline,)),
             Section("Pictures", _gallery(self._moments.pictures)),
             Section("Remarks", _remarks(history, remarks)),
             Section("Time per image", (self._times.table(),)),
@@ -102,7 +89,7 @@ class ReplayReport:
         share = history.frames_raised / max(1, history.frames_processed)
         items = [
             ("people", str(len(history.people) + history.people_dropped), "confirmed customers"),
-            ("raised hands", str(raises), "times that a hand went up"),
+            ("raised hands", str(raises), "raised hands reported"),
             ("hand_raised", f"{share:.0%}", "of the images"),
             ("images", str(history.frames_processed), f"in {history.duration_s:.1f} s"),
         ]
@@ -111,8 +98,8 @@ class ReplayReport:
             items.append(("time per image", f"{median_ms:.0f} ms", "median, on this machine"))
         if episodes is not None:
             found, all_ = len(episodes.found), len(episodes.episodes)
-            items.append(("found", f"{found} of {all_}", "raised hands of the truth"))
-            items.append(("invented", str(len(episodes.invented)), "raised hands of nobody"))
+            items.append(("found", f"{found} of {all_}", "raised hands in truth"))
+            items.append(("invented", str(len(episodes.invented)), "false raises"))
             if episodes.position_error_m is not None:
                 error = f"{episodes.position_error_m:.2f} m"
                 items.append(("position error", error, "median, hand up"))
@@ -121,10 +108,10 @@ class ReplayReport:
 
 def _trouble(problems: tuple[str, ...]) -> tuple[Part, ...]:
     if not problems:
-        return (Text(("Nothing was wrong with the recording.",)),)
+        return (Text(("No problems with the recording.",)),)
     rows = tuple((problem,) for problem in problems)
     marked = frozenset(range(len(rows)))
-    return (Table(("wrong with the recording",), rows, marked=marked),)
+    return (Table(("problems of the recording",), rows, marked=marked),)
 
 
 def _gallery(pictures: tuple[Picture, ...]) -> tuple[Part, ...]:

@@ -42,9 +42,9 @@ class StageTimes:
             self._counts[stage, place] += 1
             self._longest_s[stage] = max(self._longest_s[stage], times_s[stage])
 
-    def median_s(self, stage: int = -1) -> float:
-        """Of a stage, the whole image by default; NaN where nothing was measured."""
-        return self._quantile_s(stage, 0.5)
+    def median_s(self) -> float:
+        """Of the whole image; NaN where nothing was measured."""
+        return self._quantile_s(-1, 0.5)
 
     def table(self) -> Table:
         """Median, 99 % and the longest of each stage, in milliseconds."""

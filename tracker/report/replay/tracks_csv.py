@@ -76,5 +76,5 @@ class TracksCsv(GrowingOutput):
             raise unwritable(self._path, error) from error
         if written != len(line):
             self._file.close()
-            full = OSError(errno.ENOSPC, "the disk took only a part")
+            full = OSError(errno.ENOSPC, "only a part could be written")
             raise unwritable(self._path, full)

@@ -1,4 +1,4 @@
-"""What does a study's page hold? Figures against expectations, spreads, and the worst trials."""
+"""The page of a study: figures with their expectations, spreads, and the worst trials."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def _verdict(study: Study) -> tuple[Part, ...]:
         return ()
     off = [figure.name.strip() for figure in judged if not figure.as_expected]
     if off:
-        return (Text((f"Outside of what a perfect filter would show: {', '.join(off)}.",)),)
-    return (Text(("What has an expectation keeps to it.",)),)
+        return (Text((f"Outside the interval of a perfect filter: {', '.join(off)}.",)),)
+    return (Text(("Every figure with an expectation lies in its interval.",)),)
 
 
 def _plots(study: Study) -> tuple[Part, ...]:
@@ -78,11 +78,13 @@ def _plots(study: Study) -> tuple[Part, ...]:
         figure = Figure(figsize=(6.6, 6.4), facecolor=PAPER, layout="constrained")
         error, nees = figure.subplots(2, 1)
         draw_filter(error, nees, study)
-        return (Picture.plot(figure, "Error and NEES over time, means over the trials."),)
+        words = "Means over the trials. Good: an error near the bound, a NEES inside the band."
+        return (Picture.plot(figure, words),)
     if isinstance(study, PeopleStudy):
         figure = Figure(figsize=(6.6, 3.6), facecolor=PAPER, layout="constrained")
         draw_gospa_parts(figure.add_subplot(), study)
-        return (Picture.plot(figure, "Where the error comes from, trial by trial."),)
+        words = "GOSPA of each trial by its parts; less is better."
+        return (Picture.plot(figure, words),)
     return ()
 
 
@@ -102,7 +104,7 @@ def _histograms(study: Study) -> tuple[Part, ...]:
         draw_distribution(axes, values, trial_words(name))
     for axes in list(grid.base.flat)[len(varied) :]:
         axes.set_axis_off()
-    return (Picture.plot(figure, "How often each value came; the line is the mean."),)
+    return (Picture.plot(figure, "In how many trials each value occurred; the line is the mean."),)
 
 
 def _quantiles(study: Study) -> Table:

@@ -57,7 +57,7 @@ def draw_filter(error: Axes, nees: Axes, study: FilterStudy) -> None:
     at_s = (1 + np.arange(len(study.nees))) / study.scenario.rate_hz
     error.plot(at_s, np.sqrt(study.squared_error_m2), color=PERSON_COLORS[0], label="RMSE")
     error.plot(at_s, np.sqrt(study.bound_m2), "--", color=INK, label="Cramer-Rao bound")
-    error.set(xlabel="time (s)", ylabel="error of the position (m)", ylim=(0.0, None))
+    error.set(xlabel="time (s)", ylabel="position error (m); less is better", ylim=(0.0, None))
     error.legend(frameon=False)
     low, high = mean_bounds(4, study.trials)
     nees.axhspan(low, high, color=LIT, alpha=0.3, label="95 % of perfect filters")

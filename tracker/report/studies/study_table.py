@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def study_table(study: Study) -> Table:
-    """One line per figure, with its interval, and what a perfect filter would show."""
+    """One line per figure: its interval, what a perfect filter would show, and what is good."""
     from rich.table import Table
 
     table = Table(
@@ -30,13 +30,14 @@ def study_table(study: Study) -> Table:
         caption=study.remark if isinstance(study, PeopleStudy) else None,
         caption_justify="left",
     )
-    table.add_column("figure", no_wrap=True)
-    for name in ("value", "95 % interval", "expected"):
+    table.add_column("figure")  # wraps where the terminal is narrow; numbers never do
+    for name in ("value", "95 % interval", "expected", "good is"):
         table.add_column(name, justify="right", no_wrap=True)
     for figure in study.figures:
         value = "-" if np.isnan(figure.value) else f"{figure.value:.3f}".removesuffix(".000")
         style = "red" if figure.as_expected is False else ""
-        table.add_row(figure.name, value, _interval(figure), _expected(figure), style=style)
+        cells = (value, _interval(figure), _expected(figure), figure.good)
+        table.add_row(figure.name, *cells, style=style)
     return table
 
 

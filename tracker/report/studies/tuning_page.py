@@ -1,4 +1,4 @@
-"""What does a search's page hold? The verdict on the unseen, the winner, and what was tried."""
+"""The page of a search: the final test, the best parameters, and all trials."""
 
 from __future__ import annotations
 
@@ -25,12 +25,13 @@ def tuning_page(tuning: Tuning, *, command: str = "") -> Page:
     parameters = replace(Table.from_rich(parameters_table(tuning)), title="")
     plot = Picture.plot(
         tuning_figure(tuning),
-        "Trials and the best so far; each unseen part before and after; the figure along the "
-        "parameters that matter most (bar: before, diamond: tuned).",
+        "Top left: trials and the best so far. Top right: each part of the final test, before and "
+        "after. Below: the figure along the parameters that matter most (bar: before, diamond: "
+        "tuned).",
     )
     sections = (
         Section("In short", (_headlines(tuning), Text((_in_words(tuning),)))),
-        Section("On what the search has never seen", (verdict,)),
+        Section("Final test, on data that the search has not used", (verdict,)),
         Section("Parameters", (parameters,)),
         Section("Plots", (plot,)),
         settings_section(tuning.best),
@@ -56,9 +57,9 @@ def _headlines(tuning: Tuning) -> Facts:
 def _in_words(tuning: Tuning) -> str:
     _, low, high = tuning.gain
     if tuning.best == tuning.base:
-        return "Nothing that was tried is better than what was there before."
+        return "No trial is better than the parameters from before."
     if low > 0.0:
-        return "Better on parts that the search has never seen, beyond what chance explains."
+        return "Better on data that the search has not used; chance does not explain it."
     if high < 0.0:
-        return "Worse on parts that the search has never seen: keep what was there before."
-    return "No difference is shown on parts that the search has never seen: try more of them."
+        return "Worse on data that the search has not used: keep the parameters from before."
+    return "No clear difference on data that the search has not used: test on more of it."

@@ -61,7 +61,7 @@ def _draw_history(axes: Axes, tuning: Tuning) -> None:
         label="best so far",
     )
     axes.set(
-        title="what the search has seen",
+        title="trials of the search ({} is better)".format("less" if tuning.is_cost else "more"),
         xlabel="trial",
         ylabel=tuning.figure,
         ylim=_limits(tuning),
@@ -88,7 +88,7 @@ def _draw_unseen(axes: Axes, tuning: Tuning) -> None:
     )
     side = "below" if tuning.is_cost else "above"
     axes.set(
-        title=f"what it has never seen ({side} the line is better)",
+        title=f"final test on other data ({side} the line is better)",
         xlabel=f"before: {tuning.figure}",
         ylabel="tuned",
     )

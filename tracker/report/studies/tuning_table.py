@@ -30,6 +30,8 @@ def parameters_table(tuning: Tuning) -> Table:
     table.add_column("parameter", no_wrap=True)
     for name in ("before", "tuned", "importance"):
         table.add_column(name, justify="right", no_wrap=True)
+    table.caption = "importance: share of the parameter in what makes trials good or bad"
+    table.caption_justify = "left"
     for name in sorted(tuning.names, key=lambda name: -tuning.importance.get(name, 0.0)):
         share = tuning.importance.get(name)
         values = (_short(getattr(config, name)) for config in (tuning.base, tuning.best))
@@ -38,11 +40,11 @@ def parameters_table(tuning: Tuning) -> Table:
 
 
 def verdict_table(tuning: Tuning) -> Table:
-    """Before against tuned, on what the search has never seen."""
+    """Before against tuned, on data that the search has not used."""
     from rich.table import Table
 
     count = len(tuning.unseen_base)
-    table = Table(title=f"on {count} parts that the search has never seen", title_justify="left")
+    table = Table(title=f"final test on {count} parts that no trial used", title_justify="left")
     for name in (tuning.figure, "before", "tuned", "gain", "95 % interval"):
         table.add_column(name, justify="left" if name == tuning.figure else "right")
     gain, low, high = tuning.gain
@@ -50,9 +52,12 @@ def verdict_table(tuning: Tuning) -> Table:
     known = np.isfinite(low)
     interval = f"{low:.3f} to {high:.3f}" if known else "-"
     table.add_row("mean", f"{before:.3f}", f"{after:.3f}", f"{gain:.3f}", interval)
+    better = "less" if tuning.is_cost else "more"
+    table.caption = f"{better} is better; a gain whose interval is above 0 is real"
+    table.caption_justify = "left"
     if tuning.is_cost:
         interval = f"{low / before:.1%} to {high / before:.1%}" if known else "-"
-        table.add_row("  of what it was", "", "", f"{gain / before:.1%}", interval)
+        table.add_row("  in percent of before", "", "", f"{gain / before:.1%}", interval)
     return table
 
 

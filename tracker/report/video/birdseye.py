@@ -15,6 +15,7 @@ from tracker.report.palette import FADED, INK, LIT, PAPER, ROBOT, WALL, as_bgr, 
 #: Camera of the specification: 640 columns at a focal length of 460.
 FIELD_OF_VIEW_RAD = 2 * float(np.arctan(320 / 460))
 
+_SIDE_PX = 480
 _SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
 _ROBOT_AT = 0.84  # of the height, from the top: most of what matters is ahead
 _SIGMAS_95 = 2.448  # square root of chi-square's 95 % quantile for two dimensions
@@ -26,10 +27,8 @@ _FONT = cv2.FONT_HERSHEY_SIMPLEX
 
 def draw_birdseye(
     result: FrameResult,
-    size_px: int | tuple[int, int] = 480,
     *,
     ahead_m: float = 4.0,
-    field_of_view_rad: float = FIELD_OF_VIEW_RAD,
 ) -> ImageArray:
     """Draw one image's result from above, the camera at the bottom looking up.
 
@@ -38,17 +37,15 @@ def draw_birdseye(
 
     Args:
         result: What the pipeline made of the image.
-        size_px: Side of the square, or width and height.
         ahead_m: How far the picture reaches in front of the camera.
-        field_of_view_rad: The camera's, from edge to edge.
 
     Returns:
-        Shape (height, width, 3), uint8, blue-green-red.
+        Shape (480, 480, 3), uint8, blue-green-red.
     """
-    width, height = (size_px, size_px) if isinstance(size_px, int) else size_px
+    width = height = _SIDE_PX
     camera = result.sensor_pose if result.sensor_pose is not None else np.zeros(3)
     view = _View(width, height, camera, ahead_m)
-    picture: ImageArray = _empty_room(width, height, ahead_m, field_of_view_rad).copy()
+    picture: ImageArray = _empty_room(width, height, ahead_m).copy()
     if result.scan is not None:
         view.draw_scan(picture, result.scan.returns_m(3 * ahead_m))
     view.draw_rays(picture, result)
@@ -58,12 +55,12 @@ def draw_birdseye(
 
 
 @lru_cache(maxsize=8)
-def _empty_room(width: int, height: int, ahead_m: float, angle_rad: float) -> ImageArray:
+def _empty_room(width: int, height: int, ahead_m: float) -> ImageArray:
     """What never changes: the field of view, and a ring for every meter."""
     origin, scale, far = _origin(width, height), _scale(height, ahead_m), 2.0 * (width + height)
     picture = np.empty((height, width, 3), np.uint8)
     picture[:] = _UNSEEN
-    sides = np.linspace(-0.5, 0.5, 33) * angle_rad
+    sides = np.linspace(-0.5, 0.5, 33) * FIELD_OF_VIEW_RAD
     edge = origin + far * np.stack([np.sin(sides), -np.cos(sides)], axis=-1)
     corners = np.round(np.vstack([origin, edge])).astype(np.int32)
     cv2.fillPoly(picture, [corners], as_bgr(PAPER), cv2.LINE_AA)

@@ -1,4 +1,4 @@
-"""How does debug.mp4 come to be? Picture by picture, as H.264, which every browser plays.
+"""Writes debug.mp4, picture by picture, as H.264, which every browser plays.
 
 The file grows in fragments of about a second: a kill costs the last of them. When it is whole it
 gets the index of an ordinary .mp4.

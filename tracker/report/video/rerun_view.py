@@ -57,7 +57,7 @@ class RerunView(GrowingOutput):
             import rerun
         except ImportError as error:
             raise ConfigError(
-                "The view needs Rerun, which is not here: pip install "
+                "The view needs Rerun, which is not installed: pip install "
                 "'.[view]' in the project's folder, with Python 3.11 or newer and numpy 2."
             ) from error
         self._rerun = rerun
@@ -117,7 +117,7 @@ class RerunView(GrowingOutput):
         try:
             self._stream.flush(timeout_sec=_FLUSH_S)
         except RuntimeError as error:  # the viewer was closed, or hangs
-            self.trouble = f"the viewer did not get everything ({error})."
+            self.trouble = f"the viewer did not receive everything ({error})."
         self._stream.disconnect()
 
     def _start_viewer(self) -> bool:
@@ -125,7 +125,7 @@ class RerunView(GrowingOutput):
         try:
             self._rerun.spawn(connect=False, recording=self._stream, hide_welcome_screen=True)
         except RuntimeError as error:
-            self.trouble = f"the viewer cannot start ({error}); see to it, or use --save-view."
+            self.trouble = f"the viewer cannot start ({error}); check it, or use --save-view."
             return False
         for _ in range(3):
             sleep(_SETTLING_S / 3)

@@ -12,11 +12,12 @@ import numpy as np
 
 from tracker.containers import FloatArray
 from tracker.simulation.random_rooms.guests import (
-    STRIDE_S,
+    Visit,
     along_path,
     draw_apart,
     draw_guest,
     draw_walk,
+    path_of,
 )
 from tracker.simulation.scene import Scene, scene_from_mapping
 
@@ -36,57 +37,40 @@ _SHINS_M = (0.1, 0.35)
 _TOGETHER_SHARE, _TOGETHER_M = 0.4, (0.4, 0.6)
 
 
-def draw_bistro(
-    rng: np.random.Generator,
-    *,
-    people: int,
-    duration_s: float,
-    rate_hz: float,
-    sitting_share: float,
-    pause_s: float,
-    hand_up_s: tuple[float, float],
-    hand_down_s: tuple[float, float],
-) -> Scene:
+def draw_bistro(rng: np.random.Generator, visit: Visit) -> Scene:
     """Furnish a room and let people in; they walk around each other and around the furniture.
 
     Args:
         rng: All randomness.
-        people: How many.
-        duration_s: How long.
-        rate_hz: Of camera and laser.
-        sitting_share: How many of them sit all the time, on average, while there are chairs.
-        pause_s: Mean of the (exponentially distributed) stops of those who walk.
-        hand_up_s: How long a hand stays up, from and to.
-        hand_down_s: How long it stays down, from and to.
+        visit: Who comes.
     """
-    stamps_s = np.arange(0.0, duration_s + STRIDE_S, STRIDE_S)
+    stamps_s = visit.stamps_s
     count = int(rng.integers(_TABLES[0], _TABLES[1] + 1))
     tables = [_draw_table(rng, place) for place in draw_apart(rng, count, _TABLES_APART_M)]
     seats = [seat for table in tables for seat in _draw_seats(rng, table)]
     seats = [seats[row] for row in rng.permutation(len(seats))]
-    sitting = min(int(np.count_nonzero(rng.random(people) < sitting_share)), len(seats))
+    sitting = min(
+        int(np.count_nonzero(rng.random(visit.people) < visit.sitting_share)), len(seats)
+    )
     still = [(thing["x_m"], thing["y_m"]) for thing in (*tables, *seats)]
     obstacles = [np.broadcast_to(place, (len(stamps_s), 2)) for place in still]
     guests: list[dict[str, Any]] = []
     for seat in seats[:sitting]:
         path = [{"x_m": seat["x_m"], "y_m": seat["y_m"], "facing_deg": seat["yaw_deg"]}]
-        guest = draw_guest(rng, path, duration_s, hand_up_s, hand_down_s)
+        guest = draw_guest(rng, path, visit)
         guests.append(
             guest | {"seat_m": 0.45, "stool": False, "shins_m": float(rng.uniform(*_SHINS_M))}
         )
     times_s, places = [0.0], np.zeros((1, 2))
-    for number in range(people - sitting):
+    for number in range(visit.people - sitting):
         if number and rng.random() < _TOGETHER_SHARE:
             aside = rng.uniform(-np.pi, np.pi)
             toward = np.array([np.cos(aside), np.sin(aside)])
             places = places + rng.uniform(*_TOGETHER_M) * toward
         else:
-            times_s, places = draw_walk(rng, stamps_s, np.stack(obstacles, axis=1), pause_s)
-        path = [
-            {"at_s": at_s, "x_m": x, "y_m": y}
-            for at_s, (x, y) in zip(times_s, places.tolist(), strict=True)
-        ]
-        guests.append(draw_guest(rng, path, duration_s, hand_up_s, hand_down_s))
+            times_s, places = draw_walk(rng, stamps_s, np.stack(obstacles, axis=1), visit.pause_s)
+        path = path_of(times_s, places)
+        guests.append(draw_guest(rng, path, visit))
         obstacles.append(along_path(stamps_s, times_s, places))
     empty = [_moved(rng, seat) for seat in seats[sitting:]]
     stools = [
@@ -95,9 +79,7 @@ def draw_bistro(
     ]
     return scene_from_mapping(
         {
-            "duration_s": duration_s,
-            "camera": {"rate_hz": rate_hz},
-            "laser": {"rate_hz": rate_hz},
+            **visit.sensors,
             "walls": [
                 {"corners_m": _ROOM, "closed": True},
                 {"corners_m": _BAR, "height_m": 1.1},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,9 +16,42 @@ _SIDEWAYS = 0.75
 #: Nobody walks closer past somebody, or past a table's middle.
 _KEPT_APART_M = 0.6
 #: Steps in which paths are held against each other.
-STRIDE_S = 0.2
+_STRIDE_S = 0.2
 _TRIES = 40
 _SPEED_MPS = 1.0
+
+
+class Visit(NamedTuple):
+    """Who comes, for how long, and what they do.
+
+    Attributes:
+        people: How many.
+        duration_s: How long.
+        rate_hz: Of camera and laser.
+        sitting_share: How many of them sit all the time, on average, while there are seats.
+        pause_s: Mean of the (exponentially distributed) stops of those who walk.
+        hand_up_s: How long a hand stays up, from and to.
+        hand_down_s: How long it stays down, from and to.
+    """
+
+    people: int
+    duration_s: float
+    rate_hz: float
+    sitting_share: float
+    pause_s: float
+    hand_up_s: tuple[float, float]
+    hand_down_s: tuple[float, float]
+
+    @property
+    def stamps_s(self) -> FloatArray:
+        """Shape (T,): when paths are held against each other."""
+        return np.arange(0.0, self.duration_s + _STRIDE_S, _STRIDE_S)
+
+    @property
+    def sensors(self) -> dict[str, Any]:
+        """How long and how often sensors look, as a scene file has it."""
+        rate = {"rate_hz": self.rate_hz}
+        return {"duration_s": self.duration_s, "camera": rate, "laser": rate}
 
 
 def draw_place(rng: np.random.Generator) -> FloatArray:
@@ -40,16 +73,14 @@ def draw_apart(rng: np.random.Generator, count: int, apart_m: float) -> list[Flo
 def draw_guest(
     rng: np.random.Generator,
     path: list[dict[str, float]],
-    duration_s: float,
-    hand_up_s: tuple[float, float],
-    hand_down_s: tuple[float, float],
+    visit: Visit,
 ) -> dict[str, Any]:
     """Somebody on a path, as a scene file has it but for the id: build, hand and raises."""
     return {
         "path": path,
         "hand": str(rng.choice(["left", "right"])),
         "look": {"stature_m": float(rng.uniform(1.6, 1.9))},
-        "raises": _draw_raises(rng, duration_s, hand_up_s, hand_down_s),
+        "raises": _draw_raises(rng, visit),
     }
 
 
@@ -87,6 +118,14 @@ def draw_walk(
     return times, np.array(places)
 
 
+def path_of(times_s: list[float], places: FloatArray) -> list[dict[str, float]]:
+    """Places reached at given times, as a scene file has them."""
+    return [
+        {"at_s": at_s, "x_m": x, "y_m": y}
+        for at_s, (x, y) in zip(times_s, places.tolist(), strict=True)
+    ]
+
+
 def along_path(stamps_s: FloatArray, times_s: list[float], places: FloatArray) -> FloatArray:
     """Where somebody is at some stamps, shape (T, 2), between places reached at given times."""
     columns = [np.interp(stamps_s, times_s, places[:, axis]) for axis in (0, 1)]
@@ -102,17 +141,12 @@ def _clearance(others: FloatArray, path: FloatArray) -> float:
     return float(distance.min(initial=np.inf))
 
 
-def _draw_raises(
-    rng: np.random.Generator,
-    duration_s: float,
-    hand_up_s: tuple[float, float],
-    hand_down_s: tuple[float, float],
-) -> list[dict[str, float]]:
+def _draw_raises(rng: np.random.Generator, visit: Visit) -> list[dict[str, float]]:
     raises = []
     # Down at first, for part of a pause, so that not everybody calls at once.
-    at_s = ARM_MOTION_S + rng.uniform(0.0, hand_down_s[0])
-    while at_s < duration_s:
-        until_s = at_s + rng.uniform(*hand_up_s)
+    at_s = ARM_MOTION_S + rng.uniform(0.0, visit.hand_down_s[0])
+    while at_s < visit.duration_s:
+        until_s = at_s + rng.uniform(*visit.hand_up_s)
         raises.append({"from_s": at_s, "until_s": until_s})
-        at_s = until_s + rng.uniform(*hand_down_s)
+        at_s = until_s + rng.uniform(*visit.hand_down_s)
     return raises

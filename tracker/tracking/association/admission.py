@@ -1,4 +1,4 @@
-"""Which measurements come in, and which go together? Hands once per person, sensor by sensor."""
+"""Which measurements are used in a frame, and in which round? Hands once per person, by sensor."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Rounds(NamedTuple):
 
 @maker
 def plan_rounds(people: People, mean: FloatArray, claims: Claims, settings: Settings) -> Rounds:
-    """Who comes in, and in which round.
+    """Which measurements are used, and in which round.
 
     Args:
         people: N, predicted.
@@ -138,7 +138,7 @@ def _hands_once(
 
 @step
 def _callers(x: float, y: float, people: People, mean: FloatArray) -> int:
-    """How many call who are expected there."""
+    """How many customers call at a place."""
     count = 0
     for person in range(people.flags.shape[1]):
         across, along = x - mean[0, person, 0], y - mean[0, person, 1]

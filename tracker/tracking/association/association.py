@@ -129,7 +129,7 @@ def _augment(
     via: IntArray,
     is_done: np.ndarray,
 ) -> None:
-    """Find one more track its measurement, or let the one go without for whom that is cheapest."""
+    """Assign one more track; the track for which it is cheapest stays without a measurement."""
     for row in range(len(owner)):
         shortest[row], via[row], is_done[row] = np.inf, -1, False
     person, length = newcomer, 0.0
@@ -213,7 +213,7 @@ def _tell_claims(
     of_track: FloatArray,
     to_claim: FloatArray,
 ) -> None:
-    """Half a sweep: what each track wants of each measurement, given its other ones."""
+    """Half a sweep of belief propagation: messages from each track to each measurement."""
     for row in range(len(of_track)):
         of_track[row] = 0.0
     for pair in range(len(track)):

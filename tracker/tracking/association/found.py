@@ -33,7 +33,7 @@ class Found(NamedTuple):
 
 @maker
 def nothing_found(people: int, claims: int, rows: IntArray) -> Found:
-    """Before the first round, of so many people and claims; `rows` are the claims that came in."""
+    """The state before the first round; `rows` are the measurements that are used."""
     found = Found(
         np.empty(people, np.bool_), np.empty(people),
         np.empty(people, np.int64), np.empty(claims, np.int64),
@@ -51,7 +51,7 @@ def nothing_found(people: int, claims: int, rows: IntArray) -> Found:
 def take(
     found: Found, chosen: IntArray, probability: FloatArray, pairs: Pairs, claims: Claims
 ) -> None:
-    """Note whose the measurements of a round are.
+    """Note to whom the measurements of a round belong.
 
     Args:
         found: Changed in place.

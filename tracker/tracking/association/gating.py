@@ -112,7 +112,7 @@ def _inside_gate(
     count: int,
     settings: Settings,
 ) -> int:
-    """Write the rows inside somebody's gate behind those that are there; says where they end."""
+    """Append the rows inside a person's gate; returns the new end."""
     kind = -1
     expected, own = (0.0, 0.0), (0.0, 0.0, 0.0)
     limit, far, dof = 0.0, 0.0, 0.0
@@ -198,7 +198,7 @@ def _log_likelihood(
 def _log_likeness(
     people: People, person: int, claims: Claims, row: int, likeness: FloatArray
 ) -> float:
-    """What else speaks for a pair: the caller's own likeness, and a hint of identity."""
+    """Further evidence for a pair: the caller's likeness, and a hint of identity."""
     known, hint = people.counts[TAG, person], claims.tag[row]
     told = 0.0
     if known >= 0 and hint >= 0:

@@ -24,7 +24,7 @@ def begin_person(
     stamp_ns: int,
     settings: Settings,
 ) -> None:
-    """Write a newcomer into a row: there, as likely to walk as to stand; nothing is counted yet.
+    """Write a newcomer into a row: walking and standing are equally likely, all counts are zero.
 
     Args:
         room: Of everybody.

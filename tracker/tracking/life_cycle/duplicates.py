@@ -1,4 +1,4 @@
-"""Is one person tracked twice? A track that fell silent beside one that did not."""
+"""Is one person tracked twice? An unseen track beside a seen one is joined with it."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _were_together(people: People, silent: int, seen: int) -> bool:
 
 @loop
 def _inherit(people: People, row: int, heir: int) -> None:
-    """Somebody goes on in the heir's place; what a customer has been counts on."""
+    """Move a customer's identity and history to the track that continues."""
     counts = people.counts
     id, born_ns = counts[field.ID, row], counts[field.BORN_NS, row]
     detections, called_ns = counts[field.DETECTIONS, row], counts[field.CALLED_NS, row]

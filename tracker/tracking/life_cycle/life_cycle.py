@@ -1,4 +1,4 @@
-"""Who becomes a customer, and who is gone? Raised, exists and fresh stay three things.
+"""Who becomes a customer, and who is deleted? Raised, existing and fresh are kept apart.
 
 A hand that is not up says nothing about whether its owner is there: only time in which neither
 hand nor scan shows somebody, although in view, lets existence fade and ends a track.
@@ -37,7 +37,7 @@ def fade(
     in_view: FloatArray,
     delete_after_s: float,
 ) -> None:
-    """Between frames people may leave; silence tells where they would be seen.
+    """Lower existence: people may leave between frames, or are not seen though in view.
 
     Whoever might be anywhere by now is as good as gone, seen or not.
 

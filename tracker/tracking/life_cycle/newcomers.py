@@ -1,4 +1,4 @@
-"""Who is new? The people behind measurements that are nobody's, each once."""
+"""Who is new? One person for the measurements that belong to no known person."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def let_in(
 def _person_of(
     room: People, first: int, claims: Claims, found: Found, row: int, settings: Settings
 ) -> int:
-    """Row of the person whom a claim shows once more, or -1."""
+    """Row of the newcomer to whom a measurement also belongs, or -1."""
     for other in range(len(found.owner)):
         person = found.owner[other]
         if person < 0 or claims.raised[other] != claims.raised[row]:

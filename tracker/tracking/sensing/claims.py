@@ -1,4 +1,4 @@
-"""What was measured, as loops take it."""
+"""Measurements as plain arrays for the compiled loops."""
 
 from __future__ import annotations
 

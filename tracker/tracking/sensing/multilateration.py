@@ -1,4 +1,4 @@
-"""Where do ranges to one person meet? Three sensors at once that know no bearing give a position.
+"""Where do ranges to one person meet? Ranges from three sensors give a position.
 
 Least squares over the ranges. Two sensors, or a line of them, leave a second place, and a single
 range is a ring: those are left as they are, and correct people who are tracked already.

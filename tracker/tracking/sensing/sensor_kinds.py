@@ -1,4 +1,4 @@
-"""What can a sensor tell of somebody? For each kind: expect, jacobian, area, begin.
+"""What does a sensor measure of a person? For each kind: expect, jacobian, area, begin.
 
     kind             numbers                   h(x)
     bearing, range   bearing_rad, range_m      atan2(dy, dx) - yaw,  |d|      d = x - sensor
@@ -67,7 +67,7 @@ def jacobian(
 
 @step
 def area(kind: int, claims: Claims, row: int, settings: Settings) -> float:
-    """What a unit of the claim's own numbers covers in square meters.
+    """The area in square meters that one unit of the measured numbers covers.
 
     A density that is even over the area is so many times as large in the claim's numbers: r for a
     bearing and a range, r_max^2 / 2 for a bearing alone, 2 pi r for a range alone.

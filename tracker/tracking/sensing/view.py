@@ -1,4 +1,4 @@
-"""Whom could the sensors see at all? Field of view, range, and people who stand in front."""
+"""Whom could the sensors see? Field of view, range, and people who stand in front."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def view_numbers(view: View | None) -> FloatArray:
 
 @maker
 def visibility(mean: FloatArray, view: FloatArray) -> FloatArray:
-    """Chance that nothing but the detector itself keeps people from being detected.
+    """Probability that a person is in view and not hidden.
 
     Args:
         mean: Shape (1, N, 4), in the fixed frame.

@@ -1,4 +1,4 @@
-"""What lasts of an error is considered in what is published, not in the gain (Schmidt, 1966).
+"""Lasting errors are added to the published covariance, not used in the gain (Schmidt, 1966).
 
 With measurements h(x) + D b + v and a constant bias b, the filter errs by S b more than it
 believes: S+ = (I - K H) S - K D, and P + S cov(b) S' is published. A track begins with
@@ -23,7 +23,7 @@ BIAS = ((BIAS_XX, 0, 0), (BIAS_XY, 0, 1), (BIAS_XY, 1, 0), (BIAS_YY, 1, 1))
 def consider_bias(
     people: People, before: FloatArray, chosen: IntArray, pairs: Pairs, claims: Claims
 ) -> None:
-    """What lasts of everybody's error after a round, in place.
+    """Update everybody's lasting error after a round, in place.
 
     Args:
         people: N people, corrected.

@@ -1,4 +1,4 @@
-"""What do measurements make of a track? The extended Kalman filter, over all its hypotheses.
+"""How do measurements correct a track? The extended Kalman filter over all its hypotheses.
 
 A bearing and a range are compared where they were taken, in the sensor's frame, so that a wide
 bearing error at a long range does not have to pass for a Gaussian in x and y.
@@ -139,7 +139,7 @@ def _mix_hypotheses(
 
 @maker
 def correct_by(people: People, person: int, claims: Claims, row: int, dof: float) -> None:
-    """Correct somebody by a claim that is theirs for certain, in place."""
+    """Correct a person with a measurement that surely belongs to them, in place."""
     moved, spread, root = np.empty((1, 1, 4)), np.empty((1, 1, 4, 4)), np.empty((4, 2))
     for mode in range(len(people.weight)):
         mean, covariance = people.mean, people.covariance

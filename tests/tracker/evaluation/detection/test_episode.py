@@ -17,10 +17,12 @@ CONDITIONS = Conditions(3.0, "normal", "sharp", "tan", "short", "right", "alone"
 class Scripted:
     """Reports one hand in the images from `first` to `last`, counted from each reset."""
 
+    work = None
+
     def __init__(self, landmarks_px, first, last=10_000):
         self.landmarks_px, self.first, self.last = landmarks_px, first, last
 
-    def find(self, image):
+    def find(self, image, hints=None):
         self.image += 1
         if not self.first <= self.image - 1 < self.last:
             return Hands.none()

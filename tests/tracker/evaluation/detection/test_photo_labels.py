@@ -33,12 +33,12 @@ def test_places_may_be_left_out_and_a_byte_order_mark_does_no_harm(labels):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("file,raised\n", "holds no labels"),
-        ("name,up\na.jpg,1\n", r"line 1: the columns are name, up; needed are file,raised"),
+        ("file,raised\n", "contains no labels"),
+        ("name,up\na.jpg,1\n", r"line 1: the columns are name, up; expected file,raised"),
         ("", "line 1: the columns are none"),
         ("file,raised\na.jpg,1\nc.jpg,1\n", r"line 3: there is no photo 'c\.jpg'"),
         ("file,raised\n,1\n", "line 2: there is no photo ''"),
-        ("file,raised\na.jpg,maybe\n", "line 2: raised is 'maybe'; needed is 1 or 0"),
+        ("file,raised\na.jpg,maybe\n", "line 2: raised is 'maybe'; expected 1 or 0"),
         ("file,raised\na.jpg\n", "line 2: raised is ''"),
         ("file,raised,x,y\na.jpg,1,7,\n", "line 2: x, y are '7', ''"),
         ("file,raised,x,y\na.jpg,1,-3,4\n", "line 2: x, y are -3, 4"),
@@ -54,13 +54,13 @@ def test_what_is_off_is_named_with_its_line(labels, text, words):
 
 
 def test_a_folder_without_labels_says_how_to_write_them(tmp_path):
-    with pytest.raises(RecordingError, match=r"labels\.csv: is not there; write one with"):
+    with pytest.raises(RecordingError, match=r"labels\.csv: does not exist; write one with"):
         read_labels(tmp_path)
 
 
 def test_labels_that_are_no_text_are_refused(tmp_path):
     (tmp_path / "labels.csv").write_bytes(b"file,raised\n\xff\xfe\x00,1\n")
-    with pytest.raises(RecordingError, match=r"is no CSV file in UTF-8"):
+    with pytest.raises(RecordingError, match=r"is not a CSV file in UTF-8"):
         read_labels(tmp_path)
 
 

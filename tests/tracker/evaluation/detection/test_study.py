@@ -17,10 +17,12 @@ CONFIG = Config(processing_rate=2.0)  # few images
 class OneHand:
     """Sees a raised hand in the middle of every picture."""
 
+    work = None
+
     def __init__(self, config):
         self.config = config
 
-    def find(self, image):
+    def find(self, image, hints=None):
         shape = np.random.default_rng(0).uniform(230.0, 250.0, (1, 21, 2))
         one = np.ones(1)
         return Hands(shape, one, one, one.astype(bool), one)

@@ -27,7 +27,7 @@ def test_the_innovation_is_what_filterpy_s_filter_makes_of_the_same_numbers():
     xy = rng.normal((2.0, 1.0), 0.1, (20, 2))
     noise = 0.1**2 * np.eye(2)
     rounds, _ = watched([Measurements.cartesian(point[None], noise) for point in xy])
-    found = Innovations.concatenate([innovations_of(item) for item in rounds[1:]])
+    found = Innovations.concatenate(*(innovations_of(item) for item in rounds[1:]))
 
     oracle = filterpy.KalmanFilter(dim_x=4, dim_z=2)
     oracle.H, oracle.R = np.eye(2, 4), noise

@@ -119,7 +119,7 @@ def test_fewer_trials_than_are_there_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "named"),
     [
-        ({"seed": 4}, "seed is 3 there, 4 here"),
+        ({"seed": 4}, "seed is 3 in the folder and 4 now"),
         ({"config": default_config(PEOPLE).replace(gate_probability=0.9)}, "config.gate_prob"),
         ({"scenario": dataclasses.replace(PEOPLE, rate_hz=5.0)}, "scenario.rate_hz is 10.0"),
     ],
@@ -136,7 +136,7 @@ def test_another_study_s_folder_is_refused_and_stays_as_it_is(tmp_path, changes,
 def test_a_folder_in_which_another_command_writes_is_refused_and_stays_as_it_is(tmp_path):
     def second_study(share):
         before = files(tmp_path)
-        with pytest.raises(ConfigError, match=f"{tmp_path.name}: another command writes"):
+        with pytest.raises(ConfigError, match=f"{tmp_path.name}: another command is writing"):
             monte_carlo(PEOPLE, 9, seed=3, folder=tmp_path)
         assert files(tmp_path) == before
 
@@ -150,7 +150,7 @@ def test_a_killed_command_leaves_its_folder_to_the_next(tmp_path):
     )
     with writer:
         assert writer.stdout.readline() == b"held\n"
-        with pytest.raises(ConfigError, match="wait for its end, or name another folder"):
+        with pytest.raises(ConfigError, match="wait until it ends, or choose another folder"):
             FolderLock(tmp_path)
         writer.kill()
     monte_carlo(PEOPLE, 1, folder=tmp_path)
@@ -167,7 +167,7 @@ def test_a_damaged_table_is_named(tmp_path, line):
     monte_carlo(PEOPLE, 1, folder=tmp_path)
     with (tmp_path / "trials.csv").open("a") as file:
         file.write(line)
-    with pytest.raises(RecordingError, match=r"trials\.csv.*take it away"):
+    with pytest.raises(RecordingError, match=r"trials\.csv.*delete it"):
         monte_carlo(PEOPLE, 2, folder=tmp_path)
 
 

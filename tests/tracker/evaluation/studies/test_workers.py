@@ -81,7 +81,7 @@ def test_a_call_that_always_kills_its_worker_is_given_up():
 @pytest.mark.parametrize("address", ["dask://nowhere", "banana://x:1"])
 def test_an_address_that_is_none_is_refused(address):
     pytest.importorskip("distributed", reason="distributed is not installed")
-    with pytest.raises(ConfigError, match="is no address of a Dask scheduler"):
+    with pytest.raises(ConfigError, match="is not an address of a Dask scheduler"):
         dask_cluster(address).__enter__()
 
 

@@ -1,4 +1,4 @@
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ def stretch_of_hands(rng, number, *, side=None, range_m=(1.2, 6.0), bearing_rad=
 
 def recording(seed, stretches=40, **where):
     rng = np.random.default_rng(seed)
-    return Sightings.concatenate([stretch_of_hands(rng, n, **where) for n in range(stretches)])
+    return Sightings.concatenate(*(stretch_of_hands(rng, n, **where) for n in range(stretches)))
 
 
 def test_the_expected_bearing_is_that_of_plane_trigonometry():
@@ -81,9 +81,8 @@ def test_of_several_bodies_beside_a_ray_the_one_that_fits_is_taken():
     beside = replace(
         good, body_xy_m=good.body_xy_m * 1.6 + [0.0, 0.9], size_misfit=good.size_misfit + 4.0
     )
-    both = Sightings(
-        *(np.concatenate([getattr(beside, n), getattr(good, n)]) for n in Sightings.__slots__)
-    )
+    names = [item.name for item in fields(Sightings)]
+    both = Sightings(*(np.concatenate([getattr(beside, n), getattr(good, n)]) for n in names))
     found = calibrate(both)
     assert np.mean(found.rows >= len(beside)) > 0.95
     assert np.all(np.abs(found.correction - TRUE) < 3 * found.std)

@@ -59,7 +59,7 @@ def test_unseen_scenes_are_no_scenes_of_the_search():
     assert min(asked) > 10_000 > SHORT.parts
 
 
-def test_a_recording_is_foretold_best_with_its_own_noise():
+def test_a_recording_is_predicted_best_with_its_own_noise():
     told = Config()
     recording = RecordingObjective("a.mcap", steps_of_a_minute(0.25, told), told)
     true, stated = Config(range_std_m=0.25), told
@@ -82,20 +82,20 @@ def test_what_a_recording_cannot_judge_is_refused_by_name():
     told = Config(pose_opinion="none")
     recording = RecordingObjective("a.mcap", steps_of_a_minute(0.1, told), told)
     recording.check([name for name, search in tunable().items() if search.kind != "life"])
-    with pytest.raises(ConfigError, match="nothing about delete_after_s"):
+    with pytest.raises(ConfigError, match="cannot tune delete_after_s"):
         recording.check(["delete_after_s"])
     spec = RecordingObjective("a.mcap", recording.steps, Config(ranging="spec"))
-    with pytest.raises(ConfigError, match="nothing about range_std_m"):
+    with pytest.raises(ConfigError, match="cannot tune range_std_m"):
         spec.check(["range_std_m"])
     posed = RecordingObjective("a.mcap", recording.steps, Config())
     posed.check(["range_std_m"])
-    with pytest.raises(ConfigError, match="nothing about hand_offset_std_m"):
+    with pytest.raises(ConfigError, match="cannot tune hand_offset_std_m"):
         posed.check(["hand_offset_std_m"])
 
 
 def test_a_recording_without_enough_in_it_is_refused():
     told = Config()
-    with pytest.raises(ConfigError, match=r"a\.mcap: holds too few measurements"):
+    with pytest.raises(ConfigError, match=r"a\.mcap: contains too few measurements"):
         RecordingObjective("a.mcap", steps_of_a_minute(0.1, told)[:20], told)
 
 

@@ -67,7 +67,7 @@ def test_a_tracker_whose_gate_rejects_true_measurements_scores_worse():
     assert narrow < open_ - 0.5
 
 
-def test_who_foretells_nothing_gets_one_over_the_area():
+def test_who_predicts_nothing_gets_one_over_the_area():
     first = score_steps(steps_of(walk(3, 1)), MATCHED).log_densities
     area_m2 = np.pi * MATCHED.person_range_max_m**2
     assert first == pytest.approx([-np.log(area_m2)])
@@ -75,7 +75,7 @@ def test_who_foretells_nothing_gets_one_over_the_area():
 
 @pytest.mark.parametrize("polar", [False, True], ids=["positions", "heavy-tailed ranges"])
 @pytest.mark.parametrize("motion", ["cv", "imm"])
-def test_what_is_foretold_is_a_density(polar, motion):
+def test_what_is_predicted_is_a_density(polar, motion):
     """Summed over a fine grid of possible next measurements, it comes to one."""
     config = MATCHED.replace(motion=motion, outlier_dof=1.5, gate_probability=0.999999)
     half_m, spacing_m = 2.0, 0.08

@@ -154,7 +154,7 @@ def test_a_missing_optuna_says_how_to_get_it(storage, monkeypatch):
 def test_a_storage_that_is_none_is_named(address):
     with pytest.raises(ConfigError, match=f"--storage {re.escape(address)}: cannot be used") as it:
         tune(Bowl(), NAMES, Config(), trials=1, storage=address)
-    assert "needed is an address of a database" in str(it.value)
+    assert "expected an address of a database" in str(it.value)
     assert "\n" not in str(it.value)
 
 

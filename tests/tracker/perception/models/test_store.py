@@ -156,7 +156,7 @@ def test_failed_write_leaves_the_old_file_and_nothing_else(
         models.write("first", b"new")
     if expected is ModelFileError:
         assert error.strerror in str(caught.value)
-        assert "free some space or permit writing" in str(caught.value)
+        assert "free some space or allow writing" in str(caught.value)
     assert [path.name for path in tmp_path.iterdir()] == ["first.onnx"]
     assert models.path("first").read_bytes().startswith(small_onnx)
 

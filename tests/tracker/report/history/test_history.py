@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tracker.config import Config
 from tracker.gesture import Gesture
 from tracker.notes import Note, NoteKind
 from tracker.report.history import history as history_module
@@ -97,7 +98,7 @@ def test_memory_is_bounded_over_very_many_people_and_notes(monkeypatch, result_o
 def test_places_before_the_first_transform_are_no_places_of_the_fixed_frame(result_of):
     history = History()
     history.write(result_of(10**9, (1, 1.0, 0.4, True), sensor_pose=None))
-    note = Note(NoteKind.NEW_FIXED_FRAME, "the first transform has come")
+    note = Note(NoteKind.NEW_FIXED_FRAME, "the first transform was received")
     pose = np.array([10.0, 5.0, 0.0])
     history.write(result_of(2 * 10**9, (2, 11.0, 5.4, True), sensor_pose=pose, notes=(note,)))
     early, late = history.people.values()
@@ -117,3 +118,12 @@ def test_what_a_hand_says_is_an_interval_of_each_gesture(result_of):
         for span in history.people[3].said
     ]
     assert spans == [(Gesture.PALM, 1, 3), (Gesture.WAVE, 3, 4), (Gesture.PALM, 5, None)]
+
+
+def test_an_estimate_is_fresh_while_it_is_recent_and_certain(result_of):
+    history = History(Config(pose_max_std_m=0.5, pose_max_age_s=1.0))
+    strict = History(Config(pose_max_std_m=0.19))
+    for each in (history, strict):
+        each.write(result_of(0, (1, 1.0, 0.0, True)))  # 0.2 m along its worst axis
+    assert history.people[1].states.rows.tolist() == [[0.0, 0.9, 1.0]]
+    assert strict.people[1].states.rows.tolist() == [[0.0, 0.9, 0.0]]

@@ -22,7 +22,7 @@ def test_a_cell_counts_scans_not_beams():
 
 
 def test_a_robot_that_drives_far_keeps_the_memory_and_coarsens_the_cells():
-    grid = HitGrid(cell_m=0.03)
+    grid = HitGrid()
     for x in (0.0, 1000.0, -700.0):
         grid.add(scan(1.0, x_m=x))
     points, counts = grid.hits

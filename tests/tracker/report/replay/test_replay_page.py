@@ -6,7 +6,6 @@ import pytest
 from tracker import CameraImage, Config
 from tracker.containers import PerceptionWork
 from tracker.report.history.history import History
-from tracker.report.history.states import States
 from tracker.report.plots.overview import draw_overview
 from tracker.report.replay.moments import Moments
 from tracker.report.replay.replay_page import ReplayReport
@@ -54,11 +53,11 @@ class Images(HTMLParser):
 
 def test_the_page_has_every_chapter_and_picture(page):
     assert [section.title for section in page.sections if section.parts] == [
-        "In short", "Overview", "People", "Map", "Time line", "Pictures", "Remarks",
+        "In short", "Map and time line", "People", "Pictures", "Remarks",
         "Time per image", "Settings", "Versions and command",
     ]  # fmt: skip
     shown = Images(page.html())
-    assert len(shown.alts) == 3 + 4  # overview, map, time line; four times a hand went up
+    assert len(shown.alts) == 1 + 4  # map and time line; four times a hand went up
     # A person's first hand is told once they are confirmed, with their fifth image.
     assert shown.alts[-4:] == ["2.4 s: #1 up", "5.9 s: #2 up", "16.4 s: #4 up", "24.2 s: #1 up"]
 
@@ -96,24 +95,6 @@ def test_pictures_of_a_long_recording_are_few_and_spread_over_it(result_of):
     assert len(titles) <= 8
     assert titles[0] == "1.0 s: #1 up"
     assert float(titles[-1].split(" ")[0]) > 75.0
-
-
-def test_an_estimate_is_fresh_while_it_is_recent_and_certain(result_of):
-    states = States(Config(pose_max_std_m=0.5, pose_max_age_s=1.0))
-    states.write(result_of(0, (1, 1.0, 0.0, True)))  # 0.2 m along its worst axis
-    strict = States(Config(pose_max_std_m=0.19))
-    strict.write(result_of(0, (1, 1.0, 0.0, True)))
-    assert states.people[1].is_fresh.tolist() == [1.0]
-    assert strict.people[1].is_fresh.tolist() == [0.0]
-    assert states.people[1].covariance_m2[0].tolist() == [[0.04, 0.0], [0.0, 0.01]]
-
-
-def test_states_of_a_crowd_stay_bounded(result_of):
-    states = States(Config())
-    for number in range(1, 151):
-        states.write(result_of(number * 10**9, (number, 0.0, 0.0, False)))
-    assert len(states.people) == 100
-    assert min(states.people) == 51
 
 
 def test_stage_times_are_told_within_one_percent(result_of):

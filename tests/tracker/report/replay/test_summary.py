@@ -18,7 +18,8 @@ from tracker.report.replay.summary import summarize, summary_table, write_summar
 @pytest.fixture
 def history(result_of):
     """Person 1 is up from 1 s to 3 s and again from 5 s on, served from 2 s to 3 s."""
-    history = History(start_ns=10 * 10**9)
+    history = History()
+    history.start_ns = 10 * 10**9
     for second, is_up in (
         (11, True),
         (12, True),

@@ -24,7 +24,18 @@ def test_every_figure_is_a_line_and_the_expected_bounds_stand_beside(study):
     assert "model-matched: 20 trials of seed 4" in text
     for figure in study.figures:
         assert figure.name in text
+        assert figure.good in text
+    assert {figure.name for figure in study.figures if not figure.good} == {
+        "bound along the paths (m)",
+        "bound of expected information (m)",
+    }
     assert "{:.3f} to {:.3f}".format(*study.figures[4].expected) in text
+
+
+def test_no_number_is_cut_off_in_a_narrow_terminal(study):
+    console = Console(width=80, file=io.StringIO())
+    console.print(study_table(study))
+    assert "\N{HORIZONTAL ELLIPSIS}" not in console.file.getvalue()
 
 
 def test_a_study_is_written_as_numbers_and_a_picture(study, tmp_path):

@@ -57,7 +57,7 @@ def test_parameters_stand_in_the_order_of_their_importance(tuning):
 
 def test_the_verdict_tells_gain_and_interval(tuning):
     text = printed(verdict_table(tuning))
-    assert "12 parts that the search has never seen" in text
+    assert "12 parts that no trial used" in text
     assert "0.200 to 0.200" in text
 
 

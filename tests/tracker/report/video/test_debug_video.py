@@ -114,7 +114,7 @@ def test_a_disk_that_takes_no_more_ends_it_and_leaves_what_was_written(tmp_path)
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, hard))
     try:
-        with pytest.raises(OutputError, match=r"debug\.mp4: .*make room on the disk"):
+        with pytest.raises(OutputError, match=r"debug\.mp4: .*free some space on the disk"):
             fill_up()
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))

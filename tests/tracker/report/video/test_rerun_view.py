@@ -157,7 +157,7 @@ def test_a_viewer_that_was_closed_ends_the_waiting(rerun, tmp_path, some, monkey
     with RerunView(save=tmp_path / "view.rrd") as view:
         view.watch(an_image(some[0]), some[0])
         monkeypatch.setattr(type(view._stream), "flush", fail)
-    assert "did not get everything (unable to connect)" in view.trouble
+    assert "did not receive everything (unable to connect)" in view.trouble
 
 
 def test_the_viewer_is_started_for_the_stream_that_it_shows(rerun, monkeypatch):

@@ -3,6 +3,7 @@ import numpy as np
 from tracker.simulation.legs import chair_legs, table_posts
 from tracker.simulation.motion import people_at
 from tracker.simulation.random_rooms.bistro import draw_bistro
+from tracker.simulation.random_rooms.guests import Visit
 
 
 def draw(seed, **changes):
@@ -16,7 +17,7 @@ def draw(seed, **changes):
         "hand_down_s": (5.0, 10.0),
         **changes,
     }
-    return draw_bistro(np.random.default_rng(seed), **wanted)
+    return draw_bistro(np.random.default_rng(seed), Visit(**wanted))
 
 
 def test_the_same_randomness_is_the_same_bistro():

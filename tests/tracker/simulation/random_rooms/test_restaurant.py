@@ -1,6 +1,7 @@
 import numpy as np
 
 from tracker.simulation.motion import people_at
+from tracker.simulation.random_rooms.guests import Visit
 from tracker.simulation.random_rooms.restaurant import draw_restaurant
 
 
@@ -15,7 +16,7 @@ def draw(seed, **changes):
         "hand_down_s": (5.0, 10.0),
         **changes,
     }
-    return draw_restaurant(np.random.default_rng(seed), **wanted)
+    return draw_restaurant(np.random.default_rng(seed), Visit(**wanted))
 
 
 def test_the_same_randomness_is_the_same_restaurant():

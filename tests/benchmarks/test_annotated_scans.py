@@ -2,10 +2,10 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks._annotated_scans import read_annotated_scans, score_clusters
 from tracker.errors import RecordingError
-from tracker.evaluation.recordings.annotated_scans import read_annotated_scans, score_clusters
 
-SCANS = Path(__file__).parents[4] / "../shared/data/scans"
+SCANS = Path(__file__).parents[2] / "../shared/data/scans"
 MARKED = SCANS / "leg_tracker__positive_1_extracted.bag"
 
 
@@ -25,7 +25,7 @@ def test_people_whose_legs_are_marked_in_a_real_recording_are_found():
 def test_what_is_no_bag_is_told_so(tmp_path):
     file = tmp_path / "marked.bag"
     file.write_bytes(b"nothing")
-    with pytest.raises(RecordingError, match="no bag"):
+    with pytest.raises(RecordingError, match="not a bag"):
         score_clusters(file)
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tracker.evaluation.detection.verdict_fit import fit_weights
+from benchmarks._verdict_fit import fit_weights
 from tracker.perception.verdict.weights import NAMES, WEIGHTS
 
 

@@ -59,7 +59,7 @@ class ClusterScore:
 def score_clusters(
     path: str | Path, config: Config | None = None, within_m: float = 0.3
 ) -> ClusterScore:
-    """Hold the clusters of a recording's scans against the people marked in them.
+    """Compare the clusters of a recording's scans with the people marked in them.
 
     Args:
         path: A bag with scans and marks.
@@ -104,10 +104,10 @@ def read_annotated_scans(path: str | Path) -> Iterator[tuple[Scan, FloatArray]]:
                     places = [(pose.position.x, pose.position.y) for pose in poses]
                     marks.append(np.array(places).reshape(-1, 2))
     except (AnyReaderError, OSError) as error:
-        raise RecordingError(f"{path}: is no bag that can be read ({error}).") from error
+        raise RecordingError(f"{path}: is not a bag that can be read ({error}).") from error
     if len(scans) != len(marks) or not scans:
         raise RecordingError(
-            f"{path}: holds {len(scans)} scans and {len(marks)} PoseArrays; needed is one "
+            f"{path}: holds {len(scans)} scans and {len(marks)} PoseArrays; expected one "
             "PoseArray with the marked legs for each scan."
         )
     yield from zip(scans, marks, strict=True)
