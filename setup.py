@@ -24,6 +24,7 @@ setup(
             "report/page.html",
             "dashboard/page/*",
             "perception/gestures/signs.npz",
+            "perception/models/int8/ranges.npz",
         ],
         "tracker.scenes": ["*.yaml"],
     },

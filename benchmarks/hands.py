@@ -1,30 +1,39 @@
 """How long do hands take, beside mediapipe.solutions.hands? Both in one run, a frame each in turn.
 
-    python benchmarks/hands.py [--frames 150] [--mediapipe-python PYTHON]
+    python benchmarks/hands.py [--frames 150] [--busy] [--mediapipe-python PYTHON]
 
-The same drawn hands drift through 640 x 480 pixels; both use the same weights (complexity 1,
-fp32), video mode, and as many hands as there are. Each does its frame while the other rests, so
+The same drawn hands drift through 640 x 480 pixels; both use the same weights (complexity 1),
+video mode, and as many hands as there are. Each does its frame while the other rests, so
 that other work on the machine slows both alike. mediapipe 0.10 wants numpy 1: name a Python that
 has it (`pip install mediapipe==0.10.21` in a venv of its own), which answers from a process of
-its own; its frames come as RGB, which ours have to be turned into.
+its own; its frames come as RGB, which ours have to be turned into. With `--busy` a process beside
+keeps one core at work all the time.
 
   followed    as many hands allowed as there are: landmarks alone, as mediapipe does then
   searching   more are allowed, so that one place a frame is searched beside them
+  fp32        as followed, with models in single precision where they run in 8 bits otherwise
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
+import platform
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 
 import numpy as np
 
 WIDTH, HEIGHT = 640, 480
 WARM_UP = 10
+#: What says how fast a processor multiplies, in Linux' names.
+INSTRUCTION_SETS = (
+    "avx2", "fma", "avx512f", "avx_vnni", "avx512_vnni", "avx512_bf16", "asimd", "asimddp", "i8mm",
+)  # fmt: skip
 Step = Callable[[int, np.ndarray], tuple[float, int]]
 
 
@@ -116,13 +125,28 @@ def drawn_hands(count: int) -> Callable[[int], np.ndarray]:
     return picture
 
 
+@contextmanager
+def busy_core() -> Iterator[None]:
+    """A process that never rests, wherever the system puts it."""
+    process = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
+
+
 def measure(hands: int, frames: int, python: str) -> dict[str, np.ndarray]:
     """Seconds of each frame of each contender, in turn; ends where they find other hands."""
+    from tracker.perception.models import runs_here
+
     picture, peer = drawn_hands(hands), None
     steps: dict[str, Step] = {
         "followed": product(max_hands=hands),
         "searching": product(max_hands=hands + 4),
     }
+    if runs_here("auto") != runs_here("fp32"):
+        steps["fp32"] = product(max_hands=hands, model_numbers="fp32")
     if subprocess.run([python, "-c", "import mediapipe"], capture_output=True).returncode == 0:
         peer = MediaPipe(python, hands)
         steps = {"mediapipe": peer.step, **steps}
@@ -149,6 +173,7 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=150)
     parser.add_argument("--mediapipe-python", default=sys.executable, metavar="PYTHON")
     parser.add_argument("--serve", type=int, help=argparse.SUPPRESS)
+    parser.add_argument("--busy", action="store_true", help="keep one core at work beside")
     words = parser.parse_args()
     if words.serve:
         serve_mediapipe(words.serve)
@@ -156,11 +181,20 @@ def main() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(title="milliseconds of a frame; all found every hand", title_justify="left")
+    from tracker.perception.models import processor_features
+
+    sets = ", ".join(name for name in INSTRUCTION_SETS if name in processor_features())
+    beside = "one of them busy" if words.busy else "nothing started beside"
+    title = (
+        f"milliseconds of a frame; all found every hand\n{platform.machine()}, {os.cpu_count()} "
+        f"processors, {beside}; {sets or 'instruction sets unknown'}"
+    )
+    table = Table(title=title, title_justify="left")
     for column in ("hands", "", "median", "p99", "of mediapipe's median"):
         table.add_column(column, justify="right")
     for hands in (1, 4):
-        spent = measure(hands, words.frames, words.mediapipe_python)
+        with busy_core() if words.busy else nullcontext():
+            spent = measure(hands, words.frames, words.mediapipe_python)
         peer = np.median(spent["mediapipe"]) if "mediapipe" in spent else np.nan
         for name, times in spent.items():
             table.add_row(

@@ -35,6 +35,7 @@ PHOTOS = Path(__file__).parents[1] / "../shared/data/photos"
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("photos", type=Path, nargs="?", default=PHOTOS, help="a folder of them")
+    parser.add_argument("--numbers", choices=("fp32", "int8"), default="fp32", help="ours")
     parser.add_argument("--json", action="store_true", help="for machines")
     words = parser.parse_args()
     pictures = [cv2.imread(str(path)) for path in sorted(words.photos.glob("*.[jp][pn]g"))]
@@ -43,7 +44,7 @@ def main() -> None:
         print(f"left out: there is no {missing}")
         return
     pictures += [np.ascontiguousarray(picture[:, ::-1]) for picture in pictures]
-    looks = [compare(pictures, complexity) for complexity in range(len(NAMES))]
+    looks = [compare(pictures, complexity, words.numbers) for complexity in range(len(NAMES))]
     ours, own = zip(*looks, strict=True)
     compared = dict(zip(NAMES, ours, strict=True))
     compared |= {"both": np.concatenate(ours), "mediapipe itself": np.concatenate(own)}
@@ -68,7 +69,9 @@ def sum_up(off: np.ndarray) -> dict[str, float]:
     return {"hands": len(off), "agree": agree, "median": float(median), "p95": float(p95)}
 
 
-def compare(pictures: list[np.ndarray], complexity: int) -> tuple[np.ndarray, np.ndarray]:
+def compare(
+    pictures: list[np.ndarray], complexity: int, numbers: str
+) -> tuple[np.ndarray, np.ndarray]:
     """How far each hand of MediaPipe's is from the nearest of ours, and of its own second look."""
     from mediapipe.python.solutions.hands import Hands
 
@@ -78,6 +81,7 @@ def compare(pictures: list[np.ndarray], complexity: int) -> tuple[np.ndarray, np
         downscale_factor=1,
         search_regions_per_frame=1,
         search_lean_max_deg=180.0,
+        model_numbers=numbers,
     )
     finder, rng = HandFinder(config), np.random.default_rng(1)
     ours: list[float] = []

@@ -49,28 +49,36 @@ def models_fetch(
 
 
 def models_list(as_json: JsonOption = False) -> None:
-    """Show which models are there, and where."""
+    """Show which models are there, where, and which of them run on this processor.
+
+    Of models that come in single precision and partly in 8 bits (int8), one runs: which one says
+    the parameter `model_numbers`; its default is shown.
+    """
     from rich.table import Table
 
-    from tracker.perception.models import ModelStore
+    from tracker.config import Config
+    from tracker.perception.models import ModelStore, runs_here
 
     store = ModelStore()
     rows = store.status()
+    running = runs_here(Config().model_numbers)
     if as_json:
         print_json(
             [
                 {"name": row.name, "state": row.state.value, "path": str(row.path)}
                 | {"size_bytes": row.size_bytes, "source_sha256": row.source_sha256}
+                | {"runs": row.name in running}
                 for row in rows
             ]
         )
         return
-    table = Table("model", "state", "size", "file")
+    table = Table("model", "state", "runs", "size")
     for row in rows:
         size = f"{row.size_bytes / 1e6:.1f} MB" if row.size_bytes else ""
-        table.add_row(row.name, row.state.value, size, row.path.name)
+        runs = "yes" if row.name in running else "no"
+        table.add_row(row.name, row.state.value, runs, size)
     console.print(table)
-    console.print(f"in {store.directory}", highlight=False, soft_wrap=True)
+    console.print(f"each as MODEL.onnx in {store.directory}", highlight=False, soft_wrap=True)
 
 
 models_app.command("fetch", help=help_of(models_fetch))(models_fetch)

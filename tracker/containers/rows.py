@@ -86,7 +86,7 @@ class Rows:
         """
         if isinstance(rows, (int, np.integer)):
             rows = [rows]
-        chosen = dict(self.__dict__)
+        chosen = self._fields()
         for name in self._columns:
             part = chosen[name][rows]
             if part.ndim != chosen[name].ndim:
@@ -96,12 +96,16 @@ class Rows:
             chosen[name] = sealed(part)
         return trusted(type(self), **chosen)
 
+    def _fields(self) -> dict[str, Any]:
+        """The fields alone, without what `functools.cached_property` has added."""
+        return {name: self.__dict__[name] for name in self.__match_args__}  # type: ignore[attr-defined]
+
     @classmethod
     def concatenate(cls: type[_Batch], *parts: _Batch) -> _Batch:
         """Join batches, rows in the order given; what holds for all rows is the first batch's."""
         if not parts:
             return cls.none()
-        joined = dict(parts[0].__dict__)
+        joined = parts[0]._fields()
         for name in cls._columns:
             joined[name] = sealed(np.concatenate([getattr(part, name) for part in parts]))
         return trusted(cls, **joined)

@@ -48,7 +48,9 @@ def regions_from_palms(boxes_px: FloatArray, keypoints_px: FloatArray) -> Region
     rotation = upright_rotation(keypoints_px[:, PALM_WRIST], keypoints_px[:, PALM_MIDDLE_ROOT])
     size = boxes_px[:, 2:] - boxes_px[:, :2]
     center = (boxes_px[:, :2] + boxes_px[:, 2:]) / 2
-    return _hand_square(center, size, rotation, PALM_SCALE, PALM_SHIFT)
+    forward = np.stack([np.zeros(len(size)), -PALM_SHIFT * size[:, 1]], axis=-1)
+    center = center + _rotate(forward, np.cos(rotation), np.sin(rotation))
+    return Regions(center, PALM_SCALE * size.max(axis=-1), rotation)
 
 
 def regions_from_landmarks(landmarks_px: FloatArray) -> Regions:
@@ -58,10 +60,16 @@ def regions_from_landmarks(landmarks_px: FloatArray) -> Regions:
     rotation = upright_rotation(landmarks_px[:, WRIST], towards)
     points = landmarks_px[:, STEADY_LANDMARKS]
     origin = (points.min(axis=1) + points.max(axis=1)) / 2
-    upright = _rotate(points - origin[:, None], -rotation[:, None])
+    cos, sin = np.cos(rotation), np.sin(rotation)
+    upright = _rotate(points - origin[:, None], cos[:, None], -sin[:, None])
     low, high = upright.min(axis=1), upright.max(axis=1)
-    center = origin + _rotate((low + high) / 2, rotation)
-    return _hand_square(center, high - low, rotation, LANDMARK_SCALE, LANDMARK_SHIFT)
+    size = high - low
+    # How far the center lies along the hand's own axes; "up" is toward the fingers.
+    inside = (low + high) / 2
+    inside[:, 1] -= LANDMARK_SHIFT * size[:, 1]
+    return Regions(
+        origin + _rotate(inside, cos, sin), LANDMARK_SCALE * size.max(axis=-1), rotation
+    )
 
 
 def regions_from_alignment(alignment_px: FloatArray) -> Regions:
@@ -141,15 +149,7 @@ def _upright_boxes(regions: Regions) -> FloatArray:
     return np.concatenate([regions.center_px - half, regions.center_px + half], axis=-1)
 
 
-def _hand_square(
-    center: FloatArray, size: FloatArray, rotation: FloatArray, scale: float, shift: float
-) -> Regions:
-    forward = np.stack([np.zeros(len(size)), -shift * size[:, 1]], axis=-1)  # "up" in the hand
-    return Regions(center + _rotate(forward, rotation), scale * size.max(axis=-1), rotation)
-
-
-def _rotate(vectors: FloatArray, angle_rad: FloatArray) -> FloatArray:
-    """Turn vectors of shape (..., 2) clockwise on the screen."""
-    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+def _rotate(vectors: FloatArray, cos: FloatArray, sin: FloatArray) -> FloatArray:
+    """Turn vectors of shape (..., 2) clockwise on the screen, by angles of shape (...)."""
     x, y = vectors[..., 0], vectors[..., 1]
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)

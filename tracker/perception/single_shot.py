@@ -147,7 +147,8 @@ def decode_rows(
         confidence: Score from which a row counts.
     """
     score = probability(logits)
-    sure = np.flatnonzero((score >= confidence) & np.all(np.isfinite(boxes), axis=-1))
+    sure = np.flatnonzero(score >= confidence)
+    sure = sure[np.isfinite(boxes[sure]).all(axis=-1)]
     rows, anchor = boxes[sure].astype(np.float64), anchors[sure]
     center, half = rows[:, :2] + anchor, rows[:, 2:4] / 2
     keypoints = rows[:, 4:].reshape(len(rows), (boxes.shape[1] - 4) // 2, 2) + anchor[:, None]

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -57,3 +58,19 @@ def test_a_batch_of_no_rows_has_arrays_of_the_right_shape():
     nothing = Places.none(9)
     assert (len(nothing), nothing.stamp_ns, nothing.xy_m.shape) == (0, 9, (0, 2))
     assert nothing.known.dtype == np.bool_
+
+
+@dataclass(frozen=True, eq=False)
+class Squares(Rows):
+    side: FloatArray
+
+    @cached_property
+    def area(self):
+        return self.side**2
+
+
+def test_what_a_batch_has_computed_once_is_not_taken_over_by_other_rows():
+    squares = Squares(np.array([1.0, 2.0]))
+    assert squares.area is squares.area
+    assert squares[[1]].area.tolist() == [4.0]
+    assert Squares.concatenate(squares, squares[[1]]).area.tolist() == [1.0, 4.0, 4.0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -103,7 +104,7 @@ class Bodies(Rows):
         rise_px = self.points_px[:, SHOULDERS, 1] - self.points_px[:, WRISTS, 1]
         return np.asarray(seen & (rise_px > -_ABOUT_LEVEL * self.shoulder_px[:, None]))
 
-    @property
+    @cached_property
     def is_visible(self) -> BoolArray:
         """Shape (P, 17): points that may be relied upon."""
         finite = np.isfinite(self.points_px).all(axis=-1)
@@ -117,16 +118,16 @@ class Bodies(Rows):
         seen = self.is_visible[:, joints].all(axis=1)
         return np.asarray(seen & (rise_px < _NOSE_RISE * self.shoulder_px))
 
-    @property
+    @cached_property
     def torso_px(self) -> FloatArray:
         """Shape (P, 2): the middle of shoulders and hips, of the shoulders where no hip is seen.
 
         NaN where a shoulder is missing.
         """
-        shoulders, hips = self._shoulders_px(), self._middle_of(HIPS)
+        shoulders, hips = self._shoulders_px, self._middle_of(HIPS)
         return np.where(np.isnan(hips), shoulders, (shoulders + hips) / 2)
 
-    @property
+    @cached_property
     def shoulder_px(self) -> FloatArray:
         """Shape (P,): the shoulders' width, the yardstick of a body; NaN where one is missing.
 
@@ -134,7 +135,7 @@ class Bodies(Rows):
         far from the head as the other. Somebody who stands sideways is measured by the trunk
         instead, where hips are seen.
         """
-        shoulders, hips = self._shoulders_px(), self._middle_of(HIPS)
+        shoulders, hips = self._shoulders_px, self._middle_of(HIPS)
         width = 2.0 * np.linalg.norm(self.points_px[:, SHOULDERS[0]] - shoulders, axis=-1)
         trunk = np.linalg.norm(hips - shoulders, axis=-1)
         wider = np.fmax(width, _SHOULDERS_PER_TRUNK * trunk)
@@ -143,13 +144,14 @@ class Bodies(Rows):
     @property
     def seated(self) -> FloatArray:
         """Shape (P,), in [0, 1]: whether somebody sits; NaN where hips or knees are not seen."""
-        shoulders = self._shoulders_px()
+        shoulders = self._shoulders_px
         hips, knees = self._middle_of(HIPS), self._middle_of(KNEES)
         trunk = np.linalg.norm(hips - shoulders, axis=-1)
         fall = (knees - hips)[:, 1] / np.where(trunk > 0.0, trunk, np.nan)
         share = (_KNEES_OF_STANDING - fall) / (_KNEES_OF_STANDING - _KNEES_OF_SEATED)
         return np.asarray(np.clip(share, 0.0, 1.0))
 
+    @cached_property
     def _shoulders_px(self) -> FloatArray:
         """Shape (P, 2): the middle of both shoulders, NaN where one is missing."""
         seen = self.is_visible

@@ -84,6 +84,7 @@ class MediapipeLook:
                 threads=config.inference_threads,
                 fixed_sizes={"batch": 1},
                 provider=config.execution_provider,
+                numbers=config.model_numbers,
             )
             for name in ("pose_detection", "pose_landmark_full")
         )

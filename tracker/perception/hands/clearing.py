@@ -42,7 +42,7 @@ class PictureClearer:
         """
         green = bgr[:, :, 1]
         noise_std = measure_noise(green)
-        bright = _quantile(green[:: _STEP[0], :: _STEP[1]], 0.98)
+        bright = _quantile(green[:: _STEP[0], :: _STEP[1]].astype(np.int16), 0.98)
         gain = min(LIGHT / max(bright, 1.0), GAIN_MAX) if bright < DARK else 1.0
         self.is_noisy = noise_std >= NOISE_MIN
         if not self.is_noisy:
@@ -67,24 +67,21 @@ def measure_noise(gray: ImageArray) -> float:
     Source: Immerkaer, "Fast Noise Variance Estimation", Computer Vision and Image Understanding
         64(2), 1996; with the median for the mean, which edges would pull up.
     """
-    height, width = gray.shape
     rows, columns = _STEP
-
-    def beside(down: int, right: int) -> np.ndarray:
-        last = max(height - 2 + down, 0), max(width - 2 + right, 0)
-        return gray[down : last[0] : rows, right : last[1] : columns].astype(np.float32)
-
+    height, width = (max(size - 2, 0) for size in gray.shape)
     # Slopes and curves of the picture cancel out; of noise, 6 standard deviations are left.
-    bent = 4.0 * beside(1, 1)
-    for down, right in ((0, 1), (1, 0), (1, 2), (2, 1)):
-        bent -= 2.0 * beside(down, right)
-    for down, right in ((0, 0), (0, 2), (2, 0), (2, 2)):
-        bent += beside(down, right)
+    above, here, below = (gray[row : row + height : rows].astype(np.int16) for row in range(3))
+    bent = above - 2 * here + below
+    left, here, right = (bent[:, column : column + width : columns] for column in range(3))
+    bent = left - 2 * here + right
     return _quantile(np.abs(bent), 0.5) / (6.0 * _MEDIAN_STD) if bent.size else 0.0
 
 
 def _quantile(values: np.ndarray, share: float) -> float:
-    """The nearest of many values; NumPy's own interpolates, at four times the cost."""
+    """The nearest of many values; NumPy's own interpolates, at four times the cost.
+
+    Whole numbers of 16 bits are the fastest to order.
+    """
     row = round(share * (values.size - 1))
     return float(np.partition(values, row, axis=None)[row])
 

@@ -120,7 +120,7 @@ class HandFollower:
         began_s = time.perf_counter()
         bgr = self.seen = self._clearer.clear(image.bgr)
         places = places if room else 0
-        searches = self._searches(tint_gray(bgr), regions, expected_px, config, places)
+        searches = self._searches(bgr, regions, expected_px, config, places)
         read = Regions.concatenate(regions, guesses)
         hands, palms = self._reader.read_beside(bgr, read, searches)
         rows = np.concatenate([rows, np.full(len(guesses), -1)])
@@ -166,6 +166,7 @@ class HandFollower:
         """The palm searches of this image, to be called beside each other."""
         if count == 0:
             return []
+        bgr = tint_gray(bgr)
         size = (bgr.shape[1], bgr.shape[0])
         moved_px = self._movement.boxes(bgr)
         whole = np.array([0, 0, *size])
@@ -192,6 +193,8 @@ class HandFollower:
         suggested, the first ones, read in these regions: smoothed, if they are not too small.
         """
         is_open = hands.score < config.tracking_confidence
+        if not is_open.any():
+            return hands, 0
         found = regions_from_landmarks(hands.points_px)
         is_near = is_open & is_new & (hands.score >= PROMISING_SCORE)
         hands, again = self._read_better(bgr, hands, is_near & _is_readable(found, config), found)
@@ -218,7 +221,7 @@ class HandFollower:
 
     def _guesses(self, suggested: Regions | None, known: Regions, config: Config) -> Regions:
         """The suggested regions that are worth a reading."""
-        if suggested is None:
+        if not suggested:
             return Regions.none()
         suggested = suggested[_is_readable(suggested, config)]
         return drop_known(suggested, known)[: config.max_hands - len(known)]
@@ -274,9 +277,9 @@ def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:
 
 def regions_of(found: Sequence[Detections], config: Config) -> Regions:
     """The regions of palms from several searches, the surest first."""
-    palms = Detections.concatenate(Detections.none(), *found)
-    if len(palms) == 0:
+    if not any(map(len, found)):
         return Regions.none()
+    palms = Detections.concatenate(*found)
     palms = palms[np.argsort(-palms.score, kind="stable")]
     regions = regions_from_palms(palms.boxes_px, palms.keypoints_px)
     is_small = regions.side_px < SIDE_HANDS * config.small_hand_px

@@ -25,8 +25,8 @@ class HandFinder:
     """MediaPipe's hand pipeline on ONNX Runtime: search, landmarks, following, raise rule.
 
     Args:
-        config: `model_complexity`, `inference_threads`, `execution_provider` and the parameters
-            of the perception group.
+        config: `model_complexity`, `inference_threads`, `execution_provider`, `model_numbers` and
+            the parameters of the perception group.
         store: Where the model files live; None takes the default place.
 
     Raises:
@@ -87,7 +87,7 @@ class HandFinder:
             ModelFileError: Other models are needed and cannot be opened; nothing has changed then.
         """
         old = self._config
-        engine = ("model_complexity", "inference_threads", "execution_provider")
+        engine = ("model_complexity", "inference_threads", "execution_provider", "model_numbers")
         if any(getattr(config, name) != getattr(old, name) for name in engine):
             self._follower = self._open(config)
         self._config = config
@@ -107,6 +107,10 @@ class HandFinder:
             palm_search(WHOLE_INPUT_PX),
             palm_search(PIECE_INPUT_PX),
             LandmarkReader.open(
-                self._store, complexity, threads=config.inference_threads, provider=provider
+                self._store,
+                complexity,
+                threads=config.inference_threads,
+                provider=provider,
+                numbers=config.model_numbers,
             ),
         )

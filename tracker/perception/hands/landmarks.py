@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import cv2
 import numpy as np
@@ -13,7 +13,7 @@ import onnxruntime
 
 from tracker.containers import FloatArray, ImageArray
 from tracker.containers.rows import Column, Rows
-from tracker.perception.models import ModelStore
+from tracker.perception.models import ModelStore, model_to_run
 from tracker.perception.models.sessions import open_session
 from tracker.perception.pictures import cut_out
 from tracker.perception.regions import Regions, image_from_input
@@ -41,7 +41,7 @@ class LandmarkReader:
     """The landmark model, on one hand with all threads or beside other calls of one thread each.
 
     Args:
-        alone: Session for a single hand; may use several threads.
+        alone: Session for a single hand; may use several threads, and does in single precision.
         abreast: Session of one thread, called from `threads` Python threads at once; two
             half-loaded cores do four hands in 0.58 of the time that way, where two threads
             inside one call save next to nothing.
@@ -60,17 +60,24 @@ class LandmarkReader:
 
     @staticmethod
     def open(
-        store: ModelStore, complexity: int, *, threads: int, provider: str = "cpu"
+        store: ModelStore,
+        complexity: int,
+        *,
+        threads: int,
+        provider: str = "cpu",
+        numbers: str = "fp32",
     ) -> LandmarkReader:
         """The lite (0) or full (1) landmark model of a store; raises as `open_session`."""
         name = "hand_landmark_full" if complexity else "hand_landmark_lite"
-        sizes = {"batch": 1}
-        abreast = open_session(store, name, threads=1, fixed_sizes=sizes, provider=provider)
+        how: dict[str, Any] = {
+            "fixed_sizes": {"batch": 1}, "provider": provider, "numbers": numbers
+        }  # fmt: skip
+        abreast = open_session(store, name, threads=1, **how)
         alone = abreast
-        if threads > 1:
-            alone = open_session(
-                store, name, threads=threads, fixed_sizes=sizes, provider=provider
-            )
+        # In 8 bits a second thread gains nothing: it is late for each of so many short steps, and
+        # one that spins in wait for them takes twice the processor's time.
+        if threads > 1 and model_to_run(name, numbers, provider) == name:
+            alone = open_session(store, name, threads=threads, **how)
         return LandmarkReader(alone, abreast, threads)
 
     def read_beside(

@@ -2,6 +2,7 @@
 
 from tracker.perception.models.catalog import MODELS, ModelEntry, ModelOutput, find_model
 from tracker.perception.models.fetch import ensure_models, fetch_models
+from tracker.perception.models.numbers import model_to_run, processor_features, runs_here
 from tracker.perception.models.store import ModelState, ModelStatus, ModelStore
 from tracker.perception.models.wheel import Progress
 
@@ -16,4 +17,7 @@ __all__ = [
     "ensure_models",
     "fetch_models",
     "find_model",
+    "model_to_run",
+    "processor_features",
+    "runs_here",
 ]

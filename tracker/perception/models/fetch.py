@@ -4,6 +4,7 @@ import tempfile
 from pathlib import Path
 
 from tracker.perception.models.catalog import (
+    INT8_SUFFIX,
     LICENSE_NOTE,
     MODELS,
     WHEEL_REQUIREMENT,
@@ -54,6 +55,8 @@ def fetch_models(
     # Imported late: with onnx and tflite it takes most of a second, in vain if the above fails,
     # and whoever only wants a model's path would pay for it, too.
     from tracker.perception.models.convert import convert_tflite
+    from tracker.perception.models.int8.quantize import quantize
+    from tracker.perception.models.int8.ranges import load_ranges
 
     report("convert", 0, len(MODELS))
     for done, entry in enumerate(MODELS, start=1):
@@ -63,6 +66,8 @@ def fetch_models(
             size_is_free=entry.size_is_free,
             metadata=_describe_source(entry),
         )
+        if entry.in_bytes:
+            content = quantize(content, load_ranges(entry.name.removesuffix(INT8_SUFFIX)))
         store.write(entry.name, content)
         report("convert", done, len(MODELS))
 

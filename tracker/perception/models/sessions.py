@@ -9,7 +9,7 @@ import onnxruntime
 from onnxruntime.capi import onnxruntime_pybind11_state as runtime_errors
 
 from tracker.errors import ConfigError, ModelFileError
-from tracker.perception.models import ModelStore
+from tracker.perception.models import ModelStore, model_to_run
 
 #: ONNX Runtime's names of what `execution_provider` may be.
 PROVIDERS = {
@@ -31,6 +31,7 @@ def open_session(
     threads: int,
     fixed_sizes: dict[str, int] | None = None,
     provider: str = "cpu",
+    numbers: str = "fp32",
 ) -> onnxruntime.InferenceSession:
     """Open a model of the catalog, such as "palm_detection_full", for inference.
 
@@ -42,13 +43,15 @@ def open_session(
         fixed_sizes: Free dimensions of the input (`batch`, `height`, `width`) that will never
             change; the palm models run 6-8 % faster when told.
         provider: `Config.execution_provider`.
+        numbers: `Config.model_numbers`.
 
     Raises:
         ModelFileError: The file is absent, stale, damaged, or not understood by ONNX Runtime.
-        ConfigError: This ONNX Runtime has no such provider, or it does not start.
+        ConfigError: This ONNX Runtime has no such provider, or it does not start; or the processor
+            cannot do with such numbers.
     """
     return open_file(
-        store.path(name),
+        store.path(model_to_run(name, numbers, provider)),
         threads=threads,
         fixed_sizes=fixed_sizes,
         provider=provider,

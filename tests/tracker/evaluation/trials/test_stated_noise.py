@@ -28,7 +28,8 @@ def somebody_ahead():
 
 
 def test_restated_noise_is_what_ranging_states_under_that_configuration():
-    told, wanted = Config(), Config(range_std_m=0.3, hand_offset_std_m=0.07)
+    told = Config(arm_reach_m=0.2)  # so that the tiny hand is nobody's
+    wanted = told.replace(range_std_m=0.15, hand_offset_std_m=0.07)
     measured, expected = (
         measure_people(two_hands(), CAMERA, RigidTransform(), somebody_ahead(), config)
         for config in (told, wanted)

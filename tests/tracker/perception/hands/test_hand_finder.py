@@ -8,6 +8,9 @@ import pytest
 from tracker.config import Config
 from tracker.containers import CameraImage
 from tracker.perception import HandDetector, HandFinder
+from tracker.perception.models import processor_features
+from tracker.simulation.rendering.canvas import Canvas
+from tracker.simulation.rendering.hand_shape import paint_hand
 
 PHOTOS = Path(__file__).parents[4] / "../shared/data/photos"
 MEDIAPIPE = json.loads((Path(__file__).parent / "mediapipe_landmarks.json").read_text("utf-8"))
@@ -26,6 +29,7 @@ def finder(request, model_store):
         downscale_factor=1,
         search_regions_per_frame=1,
         search_lean_max_deg=180.0,
+        model_numbers="fp32",
     )
     return HandFinder(config, model_store)
 
@@ -185,3 +189,27 @@ def test_a_palm_that_was_up_stays_up_by_the_milder_bound(model_store):
     finder.configure(Config(raise_rule="palm", palm_raised_threshold=3.0))
     assert finder.find(image).raised.tolist() == [True]
     assert find_fresh(finder, image).raised.tolist() == [False]
+
+
+@pytest.mark.parametrize("complexity", [0, 1], ids=["lite", "full"])
+def test_8_bits_move_a_drawn_hand_by_less_than_a_fiftieth(model_store, complexity):
+    if not processor_features() & {"avx512_vnni", "avx_vnni", "asimddp"}:
+        pytest.skip("this processor has no instructions for 8-bit products")
+    canvas = Canvas(0.11, 0.32, 700.0)
+    skin = (120, 160, 214)
+    canvas.paint([[(0.0, -0.04, 0.03), (0.0, 0.08, 0.025)]], skin, 0.02)
+    paint_hand(canvas, (0.0, 0.08), 0.1, skin, thumb_right=True, palm_visible=True)
+    hand = canvas.sprite().bgra
+    picture = np.full((480, 640, 3), 150, np.uint8)
+    under = picture[120 : 120 + hand.shape[0], 250 : 250 + hand.shape[1]]
+    under[:] = under * (1.0 - hand[..., 3:] / 255.0) + hand[..., :3]
+    plain, in_bytes = (
+        HandFinder(Config(model_complexity=complexity, model_numbers=numbers), model_store).find(
+            CameraImage(0, "", picture)
+        )
+        for numbers in ("fp32", "int8")
+    )
+    assert len(plain) == len(in_bytes) == 1
+    moved_px = np.linalg.norm(plain.landmarks_px - in_bytes.landmarks_px, axis=-1)
+    assert 0.0 < moved_px.mean() < 0.02 * plain.length_px[0]
+    assert in_bytes.score[0] > 0.9

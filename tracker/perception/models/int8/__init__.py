@@ -1,0 +1,1 @@
+"""Models that compute partly in 8 bits."""

@@ -1,0 +1,67 @@
+"""Which numbers do models compute with on this processor: single precision, or partly 8 bits?"""
+
+from __future__ import annotations
+
+import platform
+from functools import cache
+from pathlib import Path
+
+from tracker.errors import ConfigError
+from tracker.perception.models.catalog import INT8_SUFFIX, MODELS
+
+_CPUINFO = Path("/proc/cpuinfo")
+#: Linux' names of instructions for products of bytes, added up four at a time. `auto` relies on
+#: the first alone, on which 8 bits were measured: 0.55 of the time. ARM's have not been.
+_FAST = frozenset({"avx512_vnni"})
+_EXACT = _FAST | {"avx_vnni", "asimddp"}
+
+
+def model_to_run(name: str, numbers: str, provider: str = "cpu") -> str:
+    """The name in the catalog of the file that runs for a model.
+
+    Args:
+        name: Of the model in single precision.
+        numbers: `Config.model_numbers`.
+        provider: ONNX Runtime's; all but the processor's run single precision.
+
+    Raises:
+        ConfigError: 8 bits are asked for where they would go wrong.
+    """
+    in_bytes = name + INT8_SUFFIX
+    is_offered = any(entry.name == in_bytes for entry in MODELS)
+    if numbers == "fp32" or not is_offered or provider != "cpu":
+        return name
+    features = processor_features()
+    if numbers == "auto":
+        return in_bytes if features & _FAST else name
+    # x86 before VNNI adds two products in 16 bits, which overflow.
+    if not features & _EXACT and platform.machine().lower() in ("x86_64", "amd64"):
+        raise ConfigError(
+            "`model_numbers` is 'int8', but this processor has no VNNI instructions, without "
+            "which the sums overflow; choose `auto` or `fp32`."
+        )
+    return in_bytes
+
+
+def runs_here(numbers: str, provider: str = "cpu") -> frozenset[str]:
+    """The names in the catalog of all files that run; the rest is there in vain.
+
+    Raises:
+        ConfigError: As `model_to_run`.
+    """
+    plain = [entry.name for entry in MODELS if not entry.in_bytes]
+    return frozenset(model_to_run(name, numbers, provider) for name in plain)
+
+
+@cache
+def processor_features() -> frozenset[str]:
+    """The instruction sets that Linux names; none elsewhere."""
+    try:
+        lines = _CPUINFO.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return frozenset()
+    for line in lines:
+        key, _, words = line.partition(":")
+        if key.strip() in ("flags", "Features"):
+            return frozenset(words.split())
+    return frozenset()
