@@ -128,7 +128,7 @@ class CallFinder:
 
     def _weigh(self, stamp_ns: int, hands: Hands, bodies: Bodies, seen: Seen) -> Hands:
         """The hands with the verdict on each."""
-        known = self._memory.recognize(stamp_ns, hands)
+        known = self._memory.recognize(stamp_ns, hands, seen.is_found)
         seen = seen._replace(swing=np.array([item.swing() for item in known]))
         evidence = gather_evidence(hands, bodies, seen)
         faint = evidence[:, NAMES.index("faint")]
@@ -137,11 +137,11 @@ class CallFinder:
         odds = log_odds(evidence)
         high = np.maximum(evidence[:, NAMES.index("high")], evidence[:, NAMES.index("swing")])
         high[(seen.owner < 0) & (high == 0.0)] = np.nan
+        is_old_look = (seen.owner >= 0) & (seen.swing == 0.0)
+        is_old_look[is_old_look] = bodies.age_s[seen.owner[is_old_look]] > 0.0
+        columns = odds.tolist(), high.tolist(), is_old_look.tolist()
         belief = np.array(
-            [
-                item.weigh(stamp_ns, *told)
-                for item, *told in zip(known, odds.tolist(), high.tolist(), strict=True)
-            ]
+            [item.weigh(stamp_ns, *told) for item, *told in zip(known, *columns, strict=True)]
         )
         begins = np.where([item.calls for item in known], 0.0, CALLS_FROM)
         bar = begins + self._bars(stamp_ns, hands, belief > begins)

@@ -18,10 +18,17 @@ UP_SHOULDERS = (0.1, 0.3)
 #: Of a hand that calls and is still up no image tells more than this against it, and of one that
 #: is not up none tells more than that for it.
 STILL_UP_MIN, NOT_UP_MAX = -0.5, 0.75
+#: Where the owner was not looked at anew, an image tells no more than this for a call: a hand on
+#: its way to a telephone is beside the head for a moment, and the next look sees it there.
+OLD_LOOK_MAX = 0.75
 
 
 def update_belief(
-    before: float, passed_s: float, evidence: float, high_shoulders: float = np.nan
+    before: float,
+    passed_s: float,
+    evidence: float,
+    high_shoulders: float = np.nan,
+    is_old_look: bool = False,
 ) -> float:
     """The log-odds that a hand calls, after one more image.
 
@@ -38,7 +45,10 @@ def update_belief(
             waves; NaN where nobody knows. A hand that called a moment ago and is still up may pass
             before the face: it is given up but slowly. One that is not up must stay: hands of
             people who talk show their palms for half a second.
+        is_old_look: What is known of the owner is known from an earlier image.
     """
+    if is_old_look:
+        evidence = min(evidence, OLD_LOOK_MAX)
     if high_shoulders > UP_SHOULDERS[1] and before > 0.0:
         evidence = max(evidence, STILL_UP_MIN)
     if high_shoulders < UP_SHOULDERS[0]:

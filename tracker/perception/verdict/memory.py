@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from tracker.containers import FloatArray, Hands, IntArray
+from tracker.containers import BoolArray, FloatArray, Hands, IntArray
 from tracker.perception.bodies.owners import hand_size_px
 from tracker.perception.verdict.belief import update_belief
 
@@ -38,7 +38,8 @@ class RememberedHand:
         calls: Whether it does.
         weighed_ns: When that was believed.
         faint: How much its owner's arms were doubted when they were seen best of late, 0 to 1.
-        way: (stamp_ns, column of the wrist) in the images of the last `_SWING_S`.
+        way: (stamp_ns, column of the wrist, whether the hand was found or a forearm ends there) in
+            the images of the last `_SWING_S`.
     """
 
     wrist_px: FloatArray
@@ -48,7 +49,7 @@ class RememberedHand:
     calls: bool = False
     weighed_ns: int = 0
     faint: float = 1.0
-    way: list[tuple[int, float]] = field(default_factory=list)
+    way: list[tuple[int, float, bool]] = field(default_factory=list)
 
     def doubt(self, stamp_ns: int, faint: float) -> float:
         """The doubt about the owner's arms: who was a person a moment ago still is."""
@@ -56,21 +57,37 @@ class RememberedHand:
         self.faint = min(faint, self.faint + passed_s / _DOUBT_S)
         return self.faint
 
-    def weigh(self, stamp_ns: int, evidence: float, high_shoulders: float = float("nan")) -> float:
+    def weigh(
+        self,
+        stamp_ns: int,
+        evidence: float,
+        high_shoulders: float = float("nan"),
+        is_old_look: bool = False,
+    ) -> float:
         """The log-odds that the hand calls, after an image's evidence; see `update_belief`."""
         passed_s = (stamp_ns - self.weighed_ns) / 1e9
-        self.log_odds = update_belief(self.log_odds, passed_s, evidence, high_shoulders)
+        self.log_odds = update_belief(
+            self.log_odds, passed_s, evidence, high_shoulders, is_old_look
+        )
         self.weighed_ns = stamp_ns
         return self.log_odds
 
     def swing(self) -> float:
-        """How much the hand moves back and forth: 0 is still, or one direction; 1 is a wave."""
-        steps = np.diff([column for _, column in self.way]) / max(self.size_px, 1.0)
-        steps = steps[np.abs(steps) > _STILL_HANDS]
-        if np.count_nonzero(np.diff(np.sign(steps))) < _TURNS_MIN:
-            return 0.0
-        to_and_fro = np.abs(steps).sum() - abs(steps.sum())
-        return float(min(to_and_fro / _WAVE_HANDS, 1.0))
+        """How much the hand goes to and fro: 0 is still, or moves one way; 1 is a wave.
+
+        Hand and forearm are not compared: where both models take turns, a hand seems to jump.
+        """
+        ways = ([column for _, column, found in self.way if found is one] for one in (True, False))
+        return max(_swing(np.array(way) / max(self.size_px, 1.0)) for way in ways)
+
+
+def _swing(way_hands: FloatArray) -> float:
+    steps = np.diff(way_hands)
+    steps = steps[np.abs(steps) > _STILL_HANDS]
+    if np.count_nonzero(np.diff(np.sign(steps))) < _TURNS_MIN:
+        return 0.0
+    to_and_fro = np.abs(steps).sum() - abs(steps.sum())
+    return float(min(to_and_fro / _WAVE_HANDS, 1.0))
 
 
 class HandMemory:
@@ -79,8 +96,19 @@ class HandMemory:
     def __init__(self) -> None:
         self._hands: list[RememberedHand] = []
 
-    def recognize(self, stamp_ns: int, hands: Hands) -> list[RememberedHand]:
-        """The memory of each hand of an image; a new one has only its place."""
+    def recognize(
+        self, stamp_ns: int, hands: Hands, is_found: BoolArray | None = None
+    ) -> list[RememberedHand]:
+        """Get what is remembered of each hand of an image; of a new one, only where it is.
+
+        Args:
+            stamp_ns: The image's.
+            hands: H hands.
+            is_found: Shape (H,): the landmark model saw the hand; otherwise a forearm ends there.
+                None means that it saw all.
+        """
+        if is_found is None:
+            is_found = np.ones(len(hands), dtype=bool)
         kept = [
             item for item in self._hands if 0 <= stamp_ns - item.seen_ns <= _FORGET_AFTER_S * 1e9
         ]
@@ -96,7 +124,7 @@ class HandMemory:
             item.wrist_px, item.seen_ns = hands.wrist_px[row], stamp_ns
             item.size_px = float(size_px[row])
             item.way = [step for step in item.way if stamp_ns - step[0] <= _SWING_S * 1e9]
-            item.way.append((stamp_ns, float(hands.wrist_px[row, 0])))
+            item.way.append((stamp_ns, float(hands.wrist_px[row, 0]), bool(is_found[row])))
             answer.append(item)
         self._hands = kept
         return answer

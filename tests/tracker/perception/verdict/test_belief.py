@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from tracker.perception.verdict.belief import (
+    CALLS_FROM,
     FIRST_LOG_ODDS,
     IMAGE_SHARE,
     LOG_ODDS_MAX,
@@ -74,3 +75,12 @@ def test_a_palm_that_is_not_up_must_stay_longer_than_one_of_people_who_talk():
     first_low, first_up = (np.array(raised)[:, row].argmax() for row in (0, 1))
     assert first_up <= 2
     assert 5 <= first_low <= 7
+
+
+def test_an_old_look_at_the_owner_is_not_the_same_evidence_once_more():
+    new, old = float("nan"), float("nan")
+    for number in range(3):
+        new = update_belief(new, 0.1, 3.0)
+        old = update_belief(old, 0.1, 3.0, is_old_look=number > 0)
+    assert new > CALLS_FROM > old
+    assert update_belief(old, 0.1, -3.0, is_old_look=True) == update_belief(old, 0.1, -3.0)

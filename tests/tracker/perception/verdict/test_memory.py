@@ -14,6 +14,16 @@ def swing(upright_hand, columns):
     return item.swing()
 
 
+def test_where_hand_and_forearm_take_turns_nothing_swings(upright_hand):
+    columns = [100.0, 112.0] * 8
+    assert swing(upright_hand, columns) == 1.0
+    memory = HandMemory()
+    for number, column in enumerate(columns):
+        found = np.array([number % 2 == 0])
+        (item,) = memory.recognize(number * PERIOD_NS, upright_hand((column, 100.0)), found)
+    assert item.swing() == 0.0
+
+
 def test_a_hand_is_the_same_where_it_was_a_moment_ago(upright_hand):
     memory = HandMemory()
     (first,) = memory.recognize(0, upright_hand((100, 100)))
