@@ -83,7 +83,8 @@ def live_command(
         raise ConfigError(f"--record is {record}; expected a name that ends in .mcap.")
     if simulated and source is not None:
         raise ConfigError(
-            f"--simulated needs no camera ({source} was given); name a scene with --scene {source}"
+            f"--simulated uses no camera: leave out {source}, or leave out --simulated to use it. "
+            "Another scene is named with --scene, such as --scene bistro."
         )
     source = source or "0"
     title = f"simulated: {scene}" if simulated else f"camera {source}"

@@ -36,6 +36,8 @@ from tracker.perception.verdict.weights import NAMES, log_odds, reasons
 
 #: An arm that was seen so long ago still counts where no hand was found.
 _ARM_MAX_AGE_S = 0.2
+#: A hand this far below the shoulders, in their widths, does not wave (guess).
+_LOW_SHOULDERS = 0.25
 #: A hand that is less likely than this to call, for itself, waits for a look at its owner.
 _MAY_CALL = -3.25
 
@@ -135,9 +137,14 @@ class CallFinder:
         for row in np.flatnonzero(~seen.is_found):
             faint[row] = known[row].doubt(stamp_ns, float(faint[row]))
         odds = log_odds(evidence)
-        high = np.maximum(evidence[:, NAMES.index("high")], evidence[:, NAMES.index("swing")])
+        low, palm_low, high, swing = (
+            evidence[:, NAMES.index(name)] for name in ("low", "palm_low", "high", "swing")
+        )
+        # Hands of people who talk go to and fro as well, but below the shoulders.
+        waves = np.where(low + palm_low <= _LOW_SHOULDERS, swing, 0.0)
+        high = np.maximum(high, waves)
         high[(seen.owner < 0) & (high == 0.0)] = np.nan
-        is_old_look = (seen.owner >= 0) & (seen.swing == 0.0)
+        is_old_look = (seen.owner >= 0) & (waves == 0.0)
         is_old_look[is_old_look] = bodies.age_s[seen.owner[is_old_look]] > 0.0
         columns = odds.tolist(), high.tolist(), is_old_look.tolist()
         belief = np.array(

@@ -77,9 +77,9 @@ def palms_px(hands: Hands, camera: CameraModel) -> tuple[FloatArray, FloatArray]
     """
     ahead, left, up = camera.rays(hands.landmarks_px[:, _PALM].reshape(-1, 2)).T
     on_cylinder = np.stack([np.arctan2(left, ahead), up / np.hypot(ahead, left)], axis=-1)
-    points = camera.fy * np.nan_to_num(on_cylinder).reshape(-1, len(_PALM), 2)
-    length, breadth = _palm(points)
-    return np.maximum(length, 1.0), breadth
+    length, breadth = _palm(camera.fy * on_cylinder.reshape(-1, len(_PALM), 2))
+    # A landmark beyond the lens's range tells no length.
+    return np.fmax(length, 1.0), np.nan_to_num(breadth)
 
 
 def _palm(points: FloatArray) -> tuple[FloatArray, FloatArray]:

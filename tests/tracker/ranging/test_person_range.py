@@ -44,3 +44,14 @@ def test_a_palm_is_as_near_as_it_is_large_wherever_a_lens_shows_it(azimuth_deg, 
     one = np.ones(1)
     length_px, _ = palms_px(Hands(points, one, one, one.astype(bool), one), camera)
     assert range_of_palm_m(length_px, camera) == pytest.approx([2.0], rel=0.02)
+
+
+def test_a_landmark_beyond_the_lens_s_range_tells_no_length():
+    camera = CameraModel(600.0, 600.0, 640.0, 360.0, (-0.35, 0.15, 0.0, 0.0, -0.03), "plumb_bob")
+    points = np.zeros((1, 21, 2))
+    points[0, [0, 5, 9, 17]] = [(1195, 300), (1215, 270), (1195, 260), (1175, 275)]
+    assert np.isnan(camera.rays(points[0, [5]])).any()
+    one = np.ones(1)
+    hands = Hands(points, one, one, one.astype(bool), one)
+    length_px, breadth_px = palms_px(hands, camera)
+    assert 0.5 < range_of_palm_m(np.maximum(length_px, breadth_px), camera)[0] < 2.0

@@ -50,8 +50,12 @@ def open_session(
         ConfigError: This ONNX Runtime has no such provider, or it does not start; or the processor
             cannot do with such numbers.
     """
+    file = model_to_run(name, numbers, provider)
+    # A folder of models from before there were 8 bits does as well.
+    if numbers == "auto" and not store.has(file):
+        file = name
     return open_file(
-        store.path(model_to_run(name, numbers, provider)),
+        store.path(file),
         threads=threads,
         fixed_sizes=fixed_sizes,
         provider=provider,

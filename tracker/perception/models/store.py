@@ -89,8 +89,16 @@ class ModelStore:
         return status.path
 
     def has_all(self) -> bool:
-        """Whether every model of the catalog is there and up to date."""
-        return all(status.state is ModelState.PRESENT for status in self.status())
+        """Whether every model is there and up to date; those in 8 bits may be missing."""
+        return all(self.has(entry.name) for entry in MODELS if not entry.in_bytes)
+
+    def has(self, name: str) -> bool:
+        """Whether a model of the catalog is there and up to date.
+
+        Raises:
+            ModelFileError: The folder or a file in it must not be read.
+        """
+        return self._status_of(name).state is ModelState.PRESENT
 
     def status(self) -> list[ModelStatus]:
         """What is there, one row per model of the catalog.

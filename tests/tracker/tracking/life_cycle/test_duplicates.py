@@ -123,6 +123,21 @@ def test_who_comes_walking_from_where_a_customer_was_is_that_customer(
     assert people.counts[ID, keep].tolist() == expected
 
 
+@pytest.mark.parametrize(
+    ("id", "missing_s", "born_s"),
+    [(YOUNG, 2.0, 1.5), (BYSTANDER, 0.2, 1.5), (BYSTANDER, 2.0, -5.0)],
+    ids=["a customer", "the sensors had turned away", "was there before"],
+)
+def test_who_is_known_to_come_from_elsewhere_is_somebody_else(people_of, id, missing_s, born_s):
+    mean = np.array([[3.0, 1.0, 0.0, 0.0], [5.0, 1.4, 1.0, 0.2]])
+    people, keep = people_of(mean, np.eye(4), ids=(OLD, id)), np.ones(2, dtype=bool)
+    people.spans[MISSING_S, 0] = missing_s
+    people.counts[BORN_NS, 1] = round(born_s * SECOND_NS)
+    people.counts[SEEN_NS, 1] = 2 * SECOND_NS
+    merge_duplicates(people, people.mean.copy(), np.array([0.0, 1.0]), keep, 0.45)
+    assert people.counts[ID, keep].tolist() == [OLD, id]
+
+
 def test_the_nearest_of_those_who_are_seen_is_the_duplicate(people_of):
     mean = np.array([[0.0, 0, 0, 0], [0.4, 0, 0, 0], [0.2, 0, 0, 0]])
     people, keep = people_of(mean, np.eye(4), ids=[1, 2, 3]), np.ones(3, dtype=bool)
