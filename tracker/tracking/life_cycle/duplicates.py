@@ -16,8 +16,9 @@ SILENT_S = 0.5
 TOGETHER_S = 0.5
 #: Where somebody came from is known for so long back, by how they walk (guess).
 CAME_FROM_S = 3.0
-#: Who was out of view for most of that time has not set off: the sensors turned away (guess).
-MISSED_SHARE = 0.5
+#: Who was out of view for nearly all of that time may still stand there: the sensors have turned
+#: away (guess; behind somebody else the share is larger).
+MISSED_SHARE = 0.1
 
 
 @loop
@@ -85,8 +86,8 @@ def _apart_m(people: People, mean: FloatArray, silent: int, seen: int) -> float:
     dx, dy = state[0] - mean[0, silent, 0], state[1] - mean[0, silent, 1]
     apart_m = np.sqrt(dx * dx + dy * dy)
     passed_s = (people.counts[field.SEEN_NS, seen] - people.counts[field.SEEN_NS, silent]) / 1e9
-    # Of customers, and of who was followed beside the silent one, it is known where they were.
-    is_new = people.counts[field.ID, seen] <= 0 and not _were_together(people, silent, seen)
+    # Of whoever was followed beside the silent one it is known where they were.
+    is_new = not _were_together(people, silent, seen)
     was_missed = people.spans[field.MISSING_S, silent] >= MISSED_SHARE * passed_s
     if is_new and was_missed and passed_s <= CAME_FROM_S:
         dx, dy = dx - state[2] * passed_s, dy - state[3] * passed_s

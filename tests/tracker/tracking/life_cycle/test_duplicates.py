@@ -125,8 +125,8 @@ def test_who_comes_walking_from_where_a_customer_was_is_that_customer(
 
 @pytest.mark.parametrize(
     ("id", "missing_s", "born_s"),
-    [(YOUNG, 2.0, 1.5), (BYSTANDER, 0.2, 1.5), (BYSTANDER, 2.0, -5.0)],
-    ids=["a customer", "the sensors had turned away", "was there before"],
+    [(YOUNG, 2.0, -5.0), (BYSTANDER, 0.1, 1.5), (BYSTANDER, 2.0, -5.0)],
+    ids=["a customer of before", "the sensors had turned away", "was there before"],
 )
 def test_who_is_known_to_come_from_elsewhere_is_somebody_else(people_of, id, missing_s, born_s):
     mean = np.array([[3.0, 1.0, 0.0, 0.0], [5.0, 1.4, 1.0, 0.2]])
