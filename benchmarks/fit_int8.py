@@ -55,7 +55,7 @@ def record(images: Iterable[tuple[bool, CameraImage]]) -> Inputs:
     """What the models of either complexity are given, images of shape (1, height, width, 3).
 
     Args:
-        images: With True where they begin anew.
+        images: Each with True where a new sequence begins.
     """
     configs = [
         Config(model_complexity=complexity, inference_threads=1, model_numbers="fp32")

@@ -1,7 +1,7 @@
 """examples/waiter.py in the rooms of the demo and the bistro, with drives of 11 and 18 s.
 
 Time is that of the recording, and goes on after its end until everybody is served. Hands are
-looked for once a scene; the node's core, which both nodes share, does the rest each time anew.
+found once for each scene; the core that both nodes share does the rest in every test.
 """
 
 import threading

@@ -30,7 +30,7 @@ from tracker.perception.pictures import continues
 from tracker.perception.pose_hands import draw_hands
 from tracker.perception.verdict.belief import CALLS_FROM
 from tracker.perception.verdict.evidence import Seen, gather_evidence
-from tracker.perception.verdict.memory import HandMemory
+from tracker.perception.verdict.memory import HandMemory, RememberedHand
 from tracker.perception.verdict.place_prior import PlacePrior
 from tracker.perception.verdict.weights import NAMES, log_odds, reasons
 
@@ -137,19 +137,7 @@ class CallFinder:
         for row in np.flatnonzero(~seen.is_found):
             faint[row] = known[row].doubt(stamp_ns, float(faint[row]))
         odds = log_odds(evidence)
-        low, palm_low, high, swing = (
-            evidence[:, NAMES.index(name)] for name in ("low", "palm_low", "high", "swing")
-        )
-        # Hands of people who talk go to and fro as well, but below the shoulders.
-        waves = np.where(low + palm_low <= _LOW_SHOULDERS, swing, 0.0)
-        high = np.maximum(high, waves)
-        high[(seen.owner < 0) & (high == 0.0)] = np.nan
-        is_old_look = (seen.owner >= 0) & (waves == 0.0)
-        is_old_look[is_old_look] = bodies.age_s[seen.owner[is_old_look]] > 0.0
-        columns = odds.tolist(), high.tolist(), is_old_look.tolist()
-        belief = np.array(
-            [item.weigh(stamp_ns, *told) for item, *told in zip(known, *columns, strict=True)]
-        )
+        belief = _believe(stamp_ns, known, odds, evidence, bodies, seen)
         begins = np.where([item.calls for item in known], 0.0, CALLS_FROM)
         bar = begins + self._bars(stamp_ns, hands, belief > begins)
         self.weighed = Weighed(bodies, evidence, odds, belief, bar)
@@ -196,3 +184,27 @@ class CallFinder:
         self._config = config
         if self._watch is not None:
             self._watch.configure(config)
+
+
+def _believe(
+    stamp_ns: int,
+    known: list[RememberedHand],
+    odds: FloatArray,
+    evidence: FloatArray,
+    bodies: Bodies,
+    seen: Seen,
+) -> FloatArray:
+    """Shape (H,): what is believed of each hand after an image's evidence."""
+    low, palm_low, high, swing = (
+        evidence[:, NAMES.index(name)] for name in ("low", "palm_low", "high", "swing")
+    )
+    # Hands of people who talk go to and fro as well, but below the shoulders.
+    waves = np.where(low + palm_low <= _LOW_SHOULDERS, swing, 0.0)
+    high = np.maximum(high, waves)
+    high[(seen.owner < 0) & (high == 0.0)] = np.nan
+    is_old_look = (seen.owner >= 0) & (waves == 0.0)
+    is_old_look[is_old_look] = bodies.age_s[seen.owner[is_old_look]] > 0.0
+    columns = odds.tolist(), high.tolist(), is_old_look.tolist()
+    return np.array(
+        [item.weigh(stamp_ns, *told) for item, *told in zip(known, *columns, strict=True)]
+    )

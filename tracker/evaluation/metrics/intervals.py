@@ -9,7 +9,7 @@ _TAIL = 0.025
 
 
 def wilson_interval(count: float, total: float) -> tuple[float, float]:
-    """Wilson's interval of a share; valid also if the count is none or all.
+    """Wilson's interval of a share; valid also if the count is 0 or the total.
 
     Args:
         count: How many of the trials.

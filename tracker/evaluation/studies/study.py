@@ -51,7 +51,7 @@ class Figure:
 
     @property
     def as_expected(self) -> bool | None:
-        """Whether the value lies in the expected interval; None if there is none."""
+        """Whether the value lies in the expected interval; None without such an interval."""
         if self.expected is None:
             return None
         return self.expected[0] <= self.value <= self.expected[1]

@@ -13,7 +13,7 @@ import onnxruntime
 
 from tracker.containers import FloatArray, ImageArray
 from tracker.containers.rows import Column, Rows
-from tracker.perception.models import ModelStore, model_to_run
+from tracker.perception.models import ModelStore, file_to_run
 from tracker.perception.models.sessions import open_session
 from tracker.perception.pictures import cut_out
 from tracker.perception.regions import Regions, image_from_input
@@ -76,7 +76,7 @@ class LandmarkReader:
         alone = abreast
         # In 8 bits a second thread gains nothing: it is late for each of so many short steps, and
         # one that spins in wait for them takes twice the processor's time.
-        if threads > 1 and model_to_run(name, numbers, provider) == name:
+        if threads > 1 and file_to_run(store, name, numbers, provider) == name:
             alone = open_session(store, name, threads=threads, **how)
         return LandmarkReader(alone, abreast, threads)
 

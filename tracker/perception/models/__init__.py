@@ -2,7 +2,12 @@
 
 from tracker.perception.models.catalog import MODELS, ModelEntry, ModelOutput, find_model
 from tracker.perception.models.fetch import ensure_models, fetch_models
-from tracker.perception.models.numbers import model_to_run, processor_features, runs_here
+from tracker.perception.models.numbers import (
+    file_to_run,
+    model_to_run,
+    processor_features,
+    runs_here,
+)
 from tracker.perception.models.store import ModelState, ModelStatus, ModelStore
 from tracker.perception.models.wheel import Progress
 
@@ -16,6 +21,7 @@ __all__ = [
     "Progress",
     "ensure_models",
     "fetch_models",
+    "file_to_run",
     "find_model",
     "model_to_run",
     "processor_features",

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tracker.errors import ConfigError
 from tracker.perception.models.catalog import INT8_SUFFIX, MODELS
+from tracker.perception.models.store import ModelStore
 
 _CPUINFO = Path("/proc/cpuinfo")
 #: Linux' names of instructions for products of bytes, added up four at a time. `auto` relies on
@@ -41,6 +42,19 @@ def model_to_run(name: str, numbers: str, provider: str = "cpu") -> str:
             "which the sums overflow; choose `auto` or `fp32`."
         )
     return in_bytes
+
+
+def file_to_run(store: ModelStore, name: str, numbers: str, provider: str = "cpu") -> str:
+    """As `model_to_run`, by the files of a store: `auto` needs none in 8 bits.
+
+    A folder of models from before there were 8 bits does as well.
+
+    Raises:
+        ConfigError: As `model_to_run`.
+        ModelFileError: The folder or a file in it must not be read.
+    """
+    file = model_to_run(name, numbers, provider)
+    return name if numbers == "auto" and not store.has(file) else file
 
 
 def runs_here(numbers: str, provider: str = "cpu") -> frozenset[str]:

@@ -9,7 +9,7 @@ import onnxruntime
 from onnxruntime.capi import onnxruntime_pybind11_state as runtime_errors
 
 from tracker.errors import ConfigError, ModelFileError
-from tracker.perception.models import ModelStore, model_to_run
+from tracker.perception.models import ModelStore, file_to_run
 
 #: ONNX Runtime's names of what `execution_provider` may be.
 PROVIDERS = {
@@ -50,12 +50,8 @@ def open_session(
         ConfigError: This ONNX Runtime has no such provider, or it does not start; or the processor
             cannot do with such numbers.
     """
-    file = model_to_run(name, numbers, provider)
-    # A folder of models from before there were 8 bits does as well.
-    if numbers == "auto" and not store.has(file):
-        file = name
     return open_file(
-        store.path(file),
+        store.path(file_to_run(store, name, numbers, provider)),
         threads=threads,
         fixed_sizes=fixed_sizes,
         provider=provider,

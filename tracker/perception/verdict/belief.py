@@ -18,8 +18,8 @@ UP_SHOULDERS = (0.1, 0.3)
 #: Of a hand that calls and is still up no image tells more than this against it, and of one that
 #: is not up none tells more than that for it.
 STILL_UP_MIN, NOT_UP_MAX = -0.5, 0.75
-#: Where the owner was not looked at anew, an image tells no more than this for a call: a hand on
-#: its way to a telephone is beside the head for a moment, and the next look sees it there.
+#: Without a new look at the owner, an image adds no more evidence for a call than this. A hand on
+#: its way to a telephone is beside the head for a moment; the next look at the body shows that.
 OLD_LOOK_MAX = 0.75
 
 

@@ -66,17 +66,17 @@ def _nearest_duplicate(
     for seen in range(len(certainty)):
         if certainty[seen] == 0.0:
             continue
-        is_apart = _were_together(people, silent, seen)
+        together = is_apart = _were_together(people, silent, seen)
         if people.counts[field.ID, seen] > 0:
             is_apart = people.spans[field.MISSING_S, silent] <= SILENT_S
-        apart_m = _apart_m(people, mean, silent, seen)
+        apart_m = _apart_m(people, mean, silent, seen, together)
         if not is_apart and apart_m < least:
             nearest, least = seen, apart_m
     return nearest
 
 
 @loop
-def _apart_m(people: People, mean: FloatArray, silent: int, seen: int) -> float:
+def _apart_m(people: People, mean: FloatArray, silent: int, seen: int, together: bool) -> float:
     """Distance of a seen track from a silent one: now, or when that was last seen if it was less.
 
     Somebody who sets off, half hidden, may be found again only after a few steps. They walk, and
@@ -86,10 +86,9 @@ def _apart_m(people: People, mean: FloatArray, silent: int, seen: int) -> float:
     dx, dy = state[0] - mean[0, silent, 0], state[1] - mean[0, silent, 1]
     apart_m = np.sqrt(dx * dx + dy * dy)
     passed_s = (people.counts[field.SEEN_NS, seen] - people.counts[field.SEEN_NS, silent]) / 1e9
-    # Of whoever was followed beside the silent one it is known where they were.
-    is_new = not _were_together(people, silent, seen)
     was_missed = people.spans[field.MISSING_S, silent] >= MISSED_SHARE * passed_s
-    if is_new and was_missed and passed_s <= CAME_FROM_S:
+    # If both were followed together, it is known where each of them was.
+    if not together and was_missed and passed_s <= CAME_FROM_S:
         dx, dy = dx - state[2] * passed_s, dy - state[3] * passed_s
         apart_m = min(apart_m, np.sqrt(dx * dx + dy * dy))
     return apart_m
