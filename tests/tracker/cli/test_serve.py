@@ -50,7 +50,7 @@ def wait_for_line(process, pattern):
 @pytest.mark.slow
 def test_the_page_of_a_replay_stays_with_its_last_frame_until_ctrl_c(serving, tmp_path):
     url = wait_for_line(serving, r"the page: (http://127\.0\.0\.1:\d+/)").group(1)
-    wait_for_line(serving, "the page stays until Ctrl-C")
+    wait_for_line(serving, "the page stays open until Ctrl-C")
     assert urllib.request.urlopen(url, timeout=10).status == 200
     place = urlsplit(url).netloc
     with connect(f"ws://{place}/frames", origin=f"http://{place}") as socket:

@@ -111,7 +111,7 @@ def test_a_customer_is_served_by_the_keyboard_alone(page):
 
 
 def test_a_parameter_is_found_and_changed(page, watched):
-    page.fill("#search", "processed per second")
+    page.fill("#search", "images per second")
     slider = page.locator("#p-processing_rate")
     slider.focus()
     page.keyboard.press("ArrowRight")

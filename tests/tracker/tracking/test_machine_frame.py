@@ -153,7 +153,7 @@ def test_where_nothing_can_be_kept_frames_are_machine_code_all_the_same(needs_nu
     (tmp_path / "cache").touch()
     said, _ = run(between=WAIT, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
     (warning,) = [line for line in said if "WARNING" in line]
-    assert "cannot be kept" in warning
+    assert "cannot be stored" in warning
     assert "NUMBA_CACHE_DIR" in warning
     assert said[-1] == "machine code [1]"
 
