@@ -7,7 +7,7 @@ their direction and size.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -16,10 +16,14 @@ from tracker.containers import FloatArray, IntArray
 from tracker.containers.rows import Rows
 from tracker.geometry import normalize_angle
 
+#: No track has this id.
+NOBODY = 0
 #: Means forget with this time constant: somebody who walks is a meter nearer after a second.
 _MEMORY_S = 1.0
 #: A hand that no image has shown for so long is another one when it comes back.
 _LOST_S = 1.0
+#: ... and may be a neighbor's after so long: two hands went down and up (guess).
+_OWNED_S = 0.35
 #: The same hand turns no farther between two images, and in each second without one (guesses) ...
 _TURN_RAD, _TURN_RAD_PER_S = 0.1, 0.5
 #: ... and looks no larger or smaller than by this factor.
@@ -31,12 +35,14 @@ class HandMeans(Rows):
     """What is known of hands; row i of each array is the same hand.
 
     Attributes:
-        heading_rad: Shape (H,): direction in the fixed frame, of the last image.
+        heading_rad: Shape (H,): direction of the hand in the fixed frame, in the last image.
         seen_ns: Shape (H,): stamp of the last image.
         palm_px2: Shape (H,): squared length of the palm, mean.
         breadth_px2: Shape (H,): squared length told by the palm's breadth, mean.
         side: Shape (H,): `owner_side`, mean.
+        torso_rad: Shape (H,): from the hand to its owner's torso, mean; NaN where no pose told it.
         images: Shape (H,): of how many images the means are worth, at least 1.
+        owner_id: Shape (H,): the track that owned it in the last image, or `NOBODY`.
     """
 
     heading_rad: FloatArray
@@ -44,7 +50,9 @@ class HandMeans(Rows):
     palm_px2: FloatArray
     breadth_px2: FloatArray
     side: FloatArray
+    torso_rad: FloatArray
     images: FloatArray
+    owner_id: IntArray
 
 
 class FollowedHands:
@@ -74,10 +82,13 @@ class FollowedHands:
         forgets = -np.expm1(-(stamp_ns - before.seen_ns) / 1e9 / _MEMORY_S)
         gain = np.maximum(1.0 / (before.images + 1.0), forgets)
         means = {"images": 1.0 / gain}
-        for name in ("palm_px2", "breadth_px2", "side"):
-            last = getattr(before, name)
-            means[name] = last + gain * (getattr(now, name) - last)
+        for name in ("palm_px2", "breadth_px2", "side", "torso_rad"):
+            last, new = getattr(before, name), getattr(now, name)
+            mean = last + gain * (new - last)
+            means[name] = np.where(np.isnan(mean), np.where(np.isnan(last), new, last), mean)
         columns = {item.name: getattr(seen, item.name).copy() for item in fields(seen)}
+        is_followed = stamp_ns - before.seen_ns <= _OWNED_S * 1e9
+        columns["owner_id"][row] = np.where(is_followed, before.owner_id, NOBODY)
         for name, mean in means.items():
             columns[name][row] = mean
         result = HandMeans(**columns)
@@ -85,6 +96,12 @@ class FollowedHands:
             result, known[np.setdiff1d(np.arange(len(known)), was)]
         )
         return result
+
+    def owned_by(self, track_id: IntArray) -> None:
+        """Remember whose the hands of the last image are, shape (H,)."""
+        owner_id = self._known.owner_id.copy()
+        owner_id[: len(track_id)] = track_id
+        self._known = replace(self._known, owner_id=owner_id)
 
 
 def _recognized(seen: HandMeans, known: HandMeans, stamp_ns: int) -> tuple[IntArray, IntArray]:

@@ -9,8 +9,9 @@ where s tells on which side the owner is (b: how far a hand is beside the body),
 range told by the palm, and A and B hold the spread among people, the noise, and how unsure the
 place is. Somebody whom nothing shows may be anywhere: p = rho r_hand, with the `newcomer_density`
 rho.
-What a hand says is a mean over all images in which it was followed, and P(person) gathers over all
-scans of a place; so a distribution sharpens with time.
+What a hand says is a mean over all images in which it was followed, P(person) gathers over all
+scans of a place, and the owner of the last image stays more likely than others; so a distribution
+sharpens with time, and nobody who walks past takes a call along.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ import numpy as np
 from tracker.camera import CameraModel
 from tracker.config import Config
 from tracker.containers import BoolArray, FloatArray, Hands, IntArray, Measurements, Tracks
-from tracker.ranging.followed_hands import FollowedHands, HandMeans
+from tracker.ranging.followed_hands import NOBODY, FollowedHands, HandMeans
 from tracker.ranging.person_range import (
     BESIDE_M,
     LANDMARK_STD_PX,
@@ -46,6 +47,9 @@ SURE = 20.0
 _NOISE_STDS = 3.0
 #: A track this young may be anything; only its cluster speaks for it (guess).
 _TRACKED_AFTER_S = 1.0
+#: A hand has the owner of the last image: in log-odds, once so many images have shown it (guess:
+#: one image in fifty gives it to another).
+_KEEPS_OWNER, _SETTLED_IMAGES = 4.0, 8.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,55 +110,37 @@ class Ownership:
             config: `arm_reach_m`, the spreads of where hands stand, and `newcomer_density`.
         """
         length_px, breadth_px = palms_px(hands, camera)
-        heading = rays.bearing_rad + rays.origin[2]
         means = self._hands.follow(
             HandMeans(
-                heading_rad=heading,
+                heading_rad=rays.wrist_bearing_rad + rays.origin[2],
                 seen_ns=np.full(len(hands), stamp_ns),
                 palm_px2=length_px**2,
                 breadth_px2=breadth_px**2,
                 side=owner_side(hands, rays.roll_rad),
+                torso_rad=np.where(hands.is_owned, rays.torso_rad, np.nan),
                 images=np.ones(len(hands)),
+                owner_id=np.full(len(hands), NOBODY),
             ),
             stamp_ns,
         )
         range_m, spread = _ranges(means, camera)
-        hidden, is_guess = self._hidden(tracked, people, stamp_ns)
-        xy_m = np.concatenate([people.xy_m, hidden.xy_m])
-        of_cluster_m2 = np.tile(config.range_std_m**2 * np.eye(2), (len(people), 1, 1))
-        unsure_m2 = np.concatenate([of_cluster_m2, hidden.covariance_m2])
-        by_shape = np.concatenate([people.log_odds, np.zeros(len(hidden.row))])
-        log_there = background.log_person(xy_m, by_shape)
-        log_there[len(people) :] += hidden.log_existence
-
-        along, across = ray_coordinates(xy_m, rays.origin[:2], heading)
-        ahead = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
-        left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
-        along_m2, left_m2 = (np.einsum("hi,kij,hj->hk", to, unsure_m2, to) for to in (ahead, left))
-        reach_m = config.arm_reach_m + _NOISE_STDS * np.sqrt(left_m2)
-        is_beside = (along > 0.0) & (np.abs(across) <= reach_m)
-        along = np.maximum(along, 0.05)
-        beside_m = np.where(hands.is_owned, config.torso_offset_std_m, config.hand_offset_std_m)
-        across_m2 = beside_m[:, None] ** 2 + left_m2
-        size = np.isfinite(range_m)[:, None]
-        log_ratio = np.where(size, np.log(along / range_m[:, None]), 0.0)
-        log2 = np.where(size, spread[:, None] ** 2, 1.0) + along_m2 / along**2
-        log_odds = log_there - (across - BESIDE_M * means.side[:, None]) ** 2 / (2.0 * across_m2)
-        log_odds -= (
-            log_ratio**2 / (2.0 * log2) + 0.5 * np.log(across_m2 * log2) + np.log(2 * np.pi)
+        everybody, is_guess = self._candidates(people, background, tracked, stamp_ns, config)
+        log_odds = everybody.log_person + _log_fit(
+            everybody, rays.origin[:2], means, range_m, spread, config
         )
-        log_odds -= np.log(config.newcomer_density * np.where(size, range_m[:, None], along))
-        log_odds = np.where(is_beside, log_odds, -np.inf)
+        tracked_id = np.append(tracked.id, NOBODY)
+        is_customer = means.owner_id[:, None] > NOBODY  # bystanders have negative ids
+        is_last = is_customer & (means.owner_id[:, None] == tracked_id[everybody.person])
+        settled = np.minimum(1.0, means.images / _SETTLED_IMAGES)[:, None]
+        log_odds += np.where(is_last, _KEEPS_OWNER * settled, 0.0)
         best = np.full(len(hands), -1)
-        if len(xy_m):
+        if log_odds.size:
             best = np.argmax(log_odds, axis=1)
             best[log_odds[np.arange(len(hands)), best] <= 0.0] = -1
-        is_cluster = (best >= 0) & (best < len(people))
-        person = np.full(len(hands), -1)
-        is_hidden = best >= len(people)
-        person[is_hidden] = hidden.row[best[is_hidden] - len(people)]
+        person = np.append(everybody.person, -1)[best]
+        self._hands.owned_by(tracked_id[person])
         self._owners = Owners(
-            cluster=np.where(is_cluster, best, -1),
+            cluster=np.where(best < len(people), best, -1),
             person=person,
             is_guess=is_guess,
             side=means.side,
@@ -163,21 +149,41 @@ class Ownership:
         )
         return self._owners
 
-    def _hidden(
-        self, tracked: Tracks, people: PersonClusters, stamp_ns: int
-    ) -> tuple[_Hidden, BoolArray]:
-        """People the scan showed earlier but not now, and people known only by their hands.
+    def _candidates(
+        self,
+        people: PersonClusters,
+        background: Background,
+        tracked: Tracks,
+        stamp_ns: int,
+        config: Config,
+    ) -> tuple[_Candidates, BoolArray]:
+        """The clusters, and people whom the scan showed earlier but not now; and `is_guess`.
 
-        A guess is the very person not seen, and no rival to whom the scan shows.
+        Who is known by hands alone is the very person not seen, and no rival to whom the scan
+        shows.
         """
         xy_m = tracked.mean[:, :2] + tracked.mean[:, 2:] * (stamp_ns - tracked.stamp_ns) / 1e9
         apart_m = np.linalg.norm(xy_m[:, None] - people.xy_m, axis=-1)
         is_shown = apart_m.min(axis=1, initial=np.inf) <= SHOWN_M
         has_been = is_shown | np.isin(tracked.id, self._shown_ids)
         self._shown_ids = tracked.id[has_been]
-        row = np.flatnonzero(has_been & ~is_shown & (tracked.age_s > _TRACKED_AFTER_S))
-        covariance_m2, existence = tracked.covariance[row, :2, :2], tracked.existence[row]
-        return _Hidden(row, xy_m[row], covariance_m2, np.log(existence)), ~has_been
+        hidden = np.flatnonzero(has_been & ~is_shown & (tracked.age_s > _TRACKED_AFTER_S))
+        person = np.full(len(people), -1)
+        if is_shown.any():
+            is_near = apart_m.min(axis=0) <= SHOWN_M
+            person = np.where(is_near, apart_m.argmin(axis=0), -1)
+        of_cluster_m2 = np.tile(config.range_std_m**2 * np.eye(2), (len(people), 1, 1))
+        places_m = np.concatenate([people.xy_m, xy_m[hidden]])
+        by_shape = np.concatenate([people.log_odds, np.zeros(len(hidden))])
+        log_person = background.log_person(places_m, by_shape)
+        log_person[len(people) :] += np.log(tracked.existence[hidden])
+        candidates = _Candidates(
+            xy_m=places_m,
+            covariance_m2=np.concatenate([of_cluster_m2, tracked.covariance[hidden, :2, :2]]),
+            log_person=log_person,
+            person=np.concatenate([person, hidden]),
+        )
+        return candidates, ~has_been
 
     def likeness(
         self, measurements: Measurements, people: int, is_seen: BoolArray | None = None
@@ -210,13 +216,45 @@ class Ownership:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Hidden:
-    """People whom the scan does not show; row i of each array is the same one."""
+class _Candidates:
+    """Who could be the owner: C clusters, then people whom the scan does not show."""
 
-    row: IntArray  # (K,), of the people tracked
-    xy_m: FloatArray  # (K, 2): where they are expected now
+    xy_m: FloatArray  # (K, 2): where they are now
     covariance_m2: FloatArray  # (K, 2, 2), of that
-    log_existence: FloatArray  # (K,)
+    log_person: FloatArray  # (K,): log-odds that it is a person at all
+    person: IntArray  # (K,): row among the people tracked; -1: none of them
+
+
+def _log_fit(
+    candidates: _Candidates,
+    origin_m: FloatArray,
+    means: HandMeans,
+    range_m: FloatArray,
+    spread: FloatArray,
+    config: Config,
+) -> FloatArray:
+    """How much better each candidate fits each hand than somebody unseen, log, shape (H, K)."""
+    is_owned = np.isfinite(means.torso_rad)
+    heading = means.heading_rad + np.where(is_owned, means.torso_rad, 0.0)
+    beside_m = np.where(is_owned, 0.0, BESIDE_M * means.side)[:, None]
+    beside_std_m = np.where(is_owned, config.torso_offset_std_m, config.hand_offset_std_m)
+    along, across = ray_coordinates(candidates.xy_m, origin_m, heading)
+    ahead = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+    left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
+    along_m2, left_m2 = (
+        np.einsum("hi,kij,hj->hk", to, candidates.covariance_m2, to) for to in (ahead, left)
+    )
+    reach_m = config.arm_reach_m + _NOISE_STDS * np.sqrt(left_m2)
+    is_beside = (along > 0.0) & (np.abs(across) <= reach_m)
+    along = np.maximum(along, 0.05)
+    across_m2 = beside_std_m[:, None] ** 2 + left_m2
+    size = np.isfinite(range_m)[:, None]
+    log_ratio = np.where(size, np.log(along / range_m[:, None]), 0.0)
+    log2 = np.where(size, spread[:, None] ** 2, 1.0) + along_m2 / along**2
+    log_fit = -((across - beside_m) ** 2) / (2.0 * across_m2) - log_ratio**2 / (2.0 * log2)
+    log_fit -= 0.5 * np.log(across_m2 * log2) + np.log(2 * np.pi)
+    log_fit -= np.log(config.newcomer_density * np.where(size, range_m[:, None], along))
+    return np.asarray(np.where(is_beside, log_fit, -np.inf))
 
 
 def _ranges(means: HandMeans, camera: CameraModel) -> tuple[FloatArray, FloatArray]:

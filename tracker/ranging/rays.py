@@ -25,7 +25,9 @@ class HandRays:
 
     Attributes:
         origin: x_m, y_m, yaw_rad of the camera in the fixed frame.
-        bearing_rad: Shape (H,), from the camera's yaw, counter-clockwise; NaN where unknown.
+        bearing_rad: Shape (H,), from the camera's yaw, counter-clockwise; NaN where unknown. That
+            of the owner's torso where a pose has told it.
+        wrist_bearing_rad: Shape (H,), of the hand itself, whoever owns it.
         bearing_std_rad: Shape (H,), of the pixel noise alone.
         roll_rad: Of the camera: what is level in the room is turned so far in the picture,
             counter-clockwise.
@@ -33,8 +35,14 @@ class HandRays:
 
     origin: FloatArray
     bearing_rad: FloatArray
+    wrist_bearing_rad: FloatArray
     bearing_std_rad: FloatArray
     roll_rad: float = 0.0
+
+    @property
+    def torso_rad(self) -> FloatArray:
+        """Shape (H,): from each hand to the owner's torso, counter-clockwise; 0 where none is."""
+        return normalize_angle(self.bearing_rad - self.wrist_bearing_rad)
 
 
 def hand_rays(
@@ -60,12 +68,14 @@ def hand_rays(
     pixels = np.where(hands.is_owned[:, None], hands.torso_px, hands.wrist_px)
     origin = fixed_from_camera.planar
     bearing = _bearing_rad(pixels, camera, fixed_from_camera)
+    wrist = _bearing_rad(hands.wrist_px, camera, fixed_from_camera)
     noise_rad = wrist_noise_px(hands.length_px, config) * _turn_per_pixel_rad(
         pixels, camera, fixed_from_camera
     )
     if config.bearing_convention == "spec":
-        bearing = -bearing
-    return HandRays(origin, bearing, np.maximum(noise_rad, 1e-4), fixed_from_camera.roll_rad)
+        bearing, wrist = -bearing, -wrist
+    noise_rad = np.maximum(noise_rad, 1e-4)
+    return HandRays(origin, bearing, wrist, noise_rad, fixed_from_camera.roll_rad)
 
 
 def _bearing_rad(

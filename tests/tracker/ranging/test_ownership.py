@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -137,3 +139,38 @@ def test_noise_does_not_make_a_hand_look_near():
         noise_px = rng.standard_normal((1, 21, 2))
         owners = judge(ownership, hand_at(6.0, 0.0, noise_px), clusters_at(), number=number)
     assert owners.range_m[0] == pytest.approx(6.0, abs=0.6)
+
+
+@pytest.mark.parametrize(("images", "owner"), [(20, 1), (0, 2)])
+def test_who_walks_past_takes_no_call_along_that_somebody_has_made(images, owner):
+    """The passer-by fits a little better: on the ray, and at the very distance of the palm."""
+    ownership, tracked = Ownership(), known_at((3.3, 0.2), (3.0, 0.0))
+    for number in range(images):
+        judge(ownership, hand_at(3.0, 0.0), clusters_at((3.3, 0.2)), tracked[[0]], number)
+    both = clusters_at((3.3, 0.2), (3.0, 0.0))
+    owners = judge(ownership, hand_at(3.0, 0.0), both, tracked, images)
+    assert tracked.id[owners.person[0]] == owner
+
+
+def test_a_hand_keeps_its_owner_though_a_pose_gives_it_to_another_torso_for_once():
+    def with_torso(y):
+        hand = hand_at(3.0, 0.4)
+        return replace(hand, torso_px=np.array([[320.0 - 460.0 * y / 3.0, 320.0]]))
+
+    ownership, people = Ownership(), clusters_at((3.0, 0.7), (3.0, -0.1))
+    tracked = known_at((3.0, 0.7), (3.0, -0.1))
+    for number in range(20):
+        judge(ownership, with_torso(0.7), people, tracked, number)
+    for number in range(20, 23):
+        owners = judge(ownership, with_torso(-0.1), people, tracked, number)
+        assert owners.cluster.tolist() == [0]
+
+
+def test_a_bystander_keeps_no_hand():
+    ownership, tracked = Ownership(), known_at((3.3, 0.2), (3.0, 0.0))
+    tracked = replace(tracked, id=np.array([-1, -2]))
+    for number in range(20):
+        judge(ownership, hand_at(3.0, 0.0), clusters_at((3.3, 0.2)), tracked[[0]], number)
+    both = clusters_at((3.3, 0.2), (3.0, 0.0))
+    owners = judge(ownership, hand_at(3.0, 0.0), both, tracked, 20)
+    assert owners.cluster.tolist() == [1]
