@@ -322,11 +322,14 @@ class Pipeline:
         """Change parameters while running; tracks stay.
 
         Only parameters that are `live` take effect (`tracker.config.parameter_extra`).
+
+        Raises:
+            ModelFileError: Other models are needed and cannot be opened; nothing has changed then.
         """
+        self.detector.configure(config)
         self.room.images.set_rate(config.processing_rate)
         self._cameras.configure(config)
         self.config = self.tracker.config = config
-        self.detector.configure(config)
 
     def restore(self, kept: WaitingList) -> None:
         """Go on with a waiting list of another run, as soon as the camera is located.

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 from tracker import CameraImage, Config, Hands, Pipeline, Scan
 from tracker.camera import CameraModel
 from tracker.containers import Caller, CallState, OccupancyGrid, Refusal, WaitingList
+from tracker.errors import ModelFileError
 from tracker.geometry import RigidTransform, euler_to_quaternion
 from tracker.gesture import Gesture
 from tracker.notes import Note, NoteKind
@@ -297,6 +298,18 @@ def test_changed_parameters_keep_the_tracks(located):
     result = play(located, 1, START_NS + 4 * PERIOD_NS)[0]
     assert result.tracks.id.tolist() == [1]
     assert result.approach_pose.position_m[0] == pytest.approx(0.5, abs=0.15)
+
+
+def test_parameters_that_the_detector_cannot_take_change_nothing(located, monkeypatch):
+    def refuse(config):
+        raise ModelFileError("no such file")
+
+    monkeypatch.setattr(located.detector, "configure", refuse)
+    before = located.config
+    with pytest.raises(ModelFileError):
+        located.configure(Config(processing_rate=5.0))
+    assert located.config is before
+    assert located.tracker.config is before
 
 
 def test_algorithm_2_the_scan_nearest_to_the_image_is_the_one_that_counts(located):

@@ -58,7 +58,9 @@ class HandFinder:
         `downscale_factor` applies to the whole-frame search; pieces of the picture and landmarks
         are read from the full image, so that their accuracy does not depend on it.
         """
-        suggested = regions_from_landmarks(hints.suggested_px)
+        suggested = None
+        if len(hints.suggested_px):
+            suggested = regions_from_landmarks(hints.suggested_px)
         found, rows = self._follower.step(
             image, self._config, hints.expected_px, hints.model_runs, suggested, hints.spared
         )
