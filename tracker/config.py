@@ -294,7 +294,7 @@ class Config(BaseModel):
     )  # fmt: skip
 
     model_numbers: Literal["auto", "fp32", "int8"] = _parameter(
-        "fp32", "This is the number format of the models on the processor: fp32 (single "
+        "auto", "This is the number format of the models on the processor: fp32 (single "
         "precision), int8 (landmarks and the search for people partly in 8 bits, which moves "
         "landmarks by about 0.3 % of the hand's length), or auto (int8 if the processor has "
         "AVX-512 VNNI, which makes it faster, else fp32).",

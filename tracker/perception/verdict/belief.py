@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-#: What is believed of a hand that was never seen, and how fast a belief fades to it, s.
-FIRST_LOG_ODDS, FADE_S = -1.75, 2.0
+#: What is believed of a hand that was never seen, and how fast a belief fades to it, s: what ten
+#: images of a second have said alike, ten more do not make surer. With 2 s throughout, near people
+#: who talk or telephone were raised five times as often (in 45 minutes drawn), and no more callers
+#: were found. A hand that calls is believed longer, as the evidence of a wave comes and goes.
+FIRST_LOG_ODDS, FADE_S, CALL_FADES_S = -1.75, 1.0, 2.0
 #: A hand begins to call when so much is believed of it, and calls until less than nothing is.
 CALLS_FROM = 1.0
 #: Images of one hand are alike; each adds this share of its evidence.
 IMAGE_SHARE = 0.5
+#: One image alone makes no call, whatever it shows: a pose that was misread lasts for one.
+IMAGE_MAX = 5.0
 #: No belief is weaker or stronger, so that a hand that goes up, or down, is soon noticed.
 LOG_ODDS_MIN, LOG_ODDS_MAX = -3.0, 6.0
 #: Wrists lower above the shoulder than the first, in widths of the shoulders, are not up; those
@@ -47,13 +52,13 @@ def update_belief(
             people who talk show their palms for half a second.
         is_old_look: What is known of the owner is known from an earlier image.
     """
-    if is_old_look:
-        evidence = min(evidence, OLD_LOOK_MAX)
+    evidence = min(evidence, OLD_LOOK_MAX if is_old_look else IMAGE_MAX)
     if high_shoulders > UP_SHOULDERS[1] and before > 0.0:
         evidence = max(evidence, STILL_UP_MIN)
     if high_shoulders < UP_SHOULDERS[0]:
         evidence = min(evidence, NOT_UP_MAX)
     faded = FIRST_LOG_ODDS
     if np.isfinite(before):
-        faded += (before - FIRST_LOG_ODDS) * float(np.exp(-passed_s / FADE_S))
+        fade_s = CALL_FADES_S if before >= CALLS_FROM else FADE_S
+        faded += (before - FIRST_LOG_ODDS) * float(np.exp(-passed_s / fade_s))
     return float(np.clip(faded + IMAGE_SHARE * evidence, LOG_ODDS_MIN, LOG_ODDS_MAX))

@@ -84,3 +84,16 @@ def test_an_old_look_at_the_owner_is_not_the_same_evidence_once_more():
         old = update_belief(old, 0.1, 3.0, is_old_look=number > 0)
     assert new > CALLS_FROM > old
     assert update_belief(old, 0.1, -3.0, is_old_look=True) == update_belief(old, 0.1, -3.0)
+
+
+def test_one_image_alone_makes_no_call_whatever_it_shows():
+    assert after(9.0, 1) < CALLS_FROM < after(9.0, 2)
+
+
+def test_what_speaks_for_a_call_but_faintly_makes_none_however_long():
+    assert after(0.4, 300) < CALLS_FROM < after(0.75, 300)
+
+
+def test_a_hand_that_calls_is_believed_longer_than_one_that_does_not():
+    lost = [(before - update_belief(before, 0.5, 0.0)) for before in (CALLS_FROM, CALLS_FROM - 0.1)]
+    assert lost[0] < lost[1]
