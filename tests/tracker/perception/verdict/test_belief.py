@@ -95,5 +95,7 @@ def test_what_speaks_for_a_call_but_faintly_makes_none_however_long():
 
 
 def test_a_hand_that_calls_is_believed_longer_than_one_that_does_not():
-    lost = [(before - update_belief(before, 0.5, 0.0)) for before in (CALLS_FROM, CALLS_FROM - 0.1)]
+    lost = [
+        (before - update_belief(before, 0.5, 0.0)) for before in (CALLS_FROM, CALLS_FROM - 0.1)
+    ]
     assert lost[0] < lost[1]
