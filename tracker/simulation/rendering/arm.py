@@ -69,7 +69,7 @@ def bend_arm(look: Look, raised: float, side: float, swing: float = 0.0) -> Arm:
 
 
 def reach(look: Look, place_m: tuple[float, float], hand_deg: float, side: float) -> Arm:
-    """The joints of an arm whose wrist is at a place before the body.
+    """The joints of an arm whose wrist is at a place in front of the body.
 
     The upper arm hangs where the forearm is long enough for that; else the forearm comes from
     below, or the arm is stretched. Whichever bone is drawn too short points toward the viewer.

@@ -1,4 +1,4 @@
-"""Who is let in, under which identity, and who is let go."""
+"""Admission, identity assignment and removal of people."""
 
 import numpy as np
 import pytest
