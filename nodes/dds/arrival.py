@@ -56,8 +56,8 @@ def _unheard(sent: list[Publisher]) -> list[str]:
     if not unheard:
         return []
     if len(unheard) == len(sent):
-        return ["No subscriber was found; check ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE."]
-    return [f"No subscriber was found for {', '.join(unheard)}."]
+        return ["Nobody subscribes; check ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE."]
+    return [f"Nobody subscribes to {', '.join(unheard)}."]
 
 
 def _of_topic(publisher: Publisher, count: int, deadline_s: float) -> list[str]:

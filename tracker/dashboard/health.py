@@ -43,11 +43,15 @@ class Health:
         words = f"{rate_hz:.1f} pictures a second, {busy_ms:.0f} ms each"
         lines = [_line("camera", True, words)]
         if scans:
-            lines.append(_line("laser", scans >= 0.9 * count, f"used by {scans} of {count}"))
+            lines.append(
+                _line(
+                    "laser", scans >= 0.9 * count, f"used by {scans} of the last {count} pictures"
+                )
+            )
         else:
             lines.append(_line("laser", False, "no scan is used: directions without distances"))
         missing = f"no position in {count - poses} pictures"
-        where = "its position is known" if poses == count else missing
+        where = "the position of camera and robot is known" if poses == count else missing
         lines.append(_line("transforms", poses == count, where))
         notes = {note.kind: note.text for _, result, _ in frames for note in result.notes}
         told = (NoteKind.NO_SCAN, NoteKind.NO_POSE)

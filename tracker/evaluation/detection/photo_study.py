@@ -115,8 +115,8 @@ def _shares(photos: Sequence[JudgedPhoto]) -> tuple[Share, ...]:
     detections = sum(len(item.is_false) for item in photos)
     return (
         share_of("raised hands found", found, labels),
-        share_of("of the hands called raised, false", invented, detections),
-        share_of("photos of nobody with a false one", fooled, len(nobody)),
+        share_of("false raises among all raises", invented, detections),
+        share_of("photos without a call, with a false raise", fooled, len(nobody)),
     )
 
 

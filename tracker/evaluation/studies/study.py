@@ -160,9 +160,9 @@ class KnownPeopleStudy(StudyOf[KnownPeopleScenario]):
         return (
             _root_mean("RMSE (m)", rows["mse_m2"], "less"),
             _mean("NEES of found people (ideal 4)", rows["final_nees"], "near 4"),
-            _mean("wrong measurements, share", rows["wrong_share"], "0"),
-            _mean("people swapped, share", rows["swapped_share"], "0"),
-            _mean("people lost, share", rows["lost_share"], "0"),
+            _mean("wrong measurements, share", rows["wrong_share"], "0", most=1.0),
+            _mean("people swapped, share", rows["swapped_share"], "0", most=1.0),
+            _mean("people lost, share", rows["lost_share"], "0", most=1.0),
         )
 
 
@@ -194,13 +194,18 @@ class PeopleStudy(StudyOf[PeopleScenario | ScanScenario]):
             _mean("  people missed (m²)", rows["gospa_missed"], "less"),
             _mean("  false tracks (m²)", rows["gospa_false"], "less"),
             _mean("OSPA (m), cutoff 1 m", rows["ospa_m"], "less"),
-            _mean("missed share of people", rows["missed_share"], "0"),
+            _mean("missed share of people", rows["missed_share"], "0", most=1.0),
             _mean("false tracks in a frame", rows["false_tracks"], "0"),
             _mean("identity switches a minute", rows["identity_switches_per_min"], "0"),
-            _mean("track purity", rows["track_purity"], "near 1"),
+            _mean("track purity", rows["track_purity"], "near 1", most=1.0),
             _mean("RMSE of found people (m)", rows["rmse_m"], "less"),
             _mean("NEES of the position (ideal 2)", rows["nees_position"], "near 2"),
-            _mean("people inside the 95 % ellipse, share", rows["covered_share"], "near 0.95"),
+            _mean(
+                "people inside the 95 % ellipse, share",
+                rows["covered_share"],
+                "near 0.95",
+                most=1.0,
+            ),
             _mean("time to raise (s)", rows["time_to_raise_s"], "less"),
             Figure("raised hands", hands),
             _share("missed raises, share", rows["missed_raises"].sum(), hands, "0"),
@@ -238,7 +243,8 @@ def study_as_dict(study: Study) -> dict[str, Any]:
     }
 
 
-def _mean(name: str, values: FloatArray, good: str) -> Figure:
+def _mean(name: str, values: FloatArray, good: str, most: float = np.inf) -> Figure:
+    """The mean and its interval, cut at what a figure can be: from 0 to `most`."""
     values = values[np.isfinite(values)]
     if len(values) == 0:
         return Figure(name, float("nan"), good=good)
@@ -246,7 +252,7 @@ def _mean(name: str, values: FloatArray, good: str) -> Figure:
     if len(values) == 1:
         return Figure(name, mean, good=good)
     half = float(norm.ppf(0.975) * values.std(ddof=1) / np.sqrt(len(values)))
-    return Figure(name, mean, mean - half, mean + half, good=good)
+    return Figure(name, mean, max(mean - half, 0.0), min(mean + half, most), good=good)
 
 
 def _root_mean(name: str, squares: FloatArray, good: str) -> Figure:

@@ -14,7 +14,7 @@ CALLS_FROM = 1.0
 #: Images of one hand are alike; each adds this share of its evidence.
 IMAGE_SHARE = 0.5
 #: One image alone makes no call, whatever it shows: a pose that was misread lasts for one.
-IMAGE_MAX = 5.0
+IMAGE_MAX = 5.4
 #: No belief is weaker or stronger, so that a hand that goes up, or down, is soon noticed.
 LOG_ODDS_MIN, LOG_ODDS_MAX = -3.0, 6.0
 #: Wrists lower above the shoulder than the first, in widths of the shoulders, are not up; those

@@ -170,7 +170,7 @@ def _status(hands: Hands, tracks: Tracks | None, config: Config) -> _Label:
             parts.append(f"serving #{tracks.selected_id}")
             short.append(f"#{tracks.selected_id}")
     if config.raise_rule == "evidence":
-        rule = "up by evidence, from 0.5"
+        rule = "raised if surer than 0.5"
     elif config.raise_rule == "palm":
         rule = f"up from {config.palm_raised_threshold:g} palm lengths"
     else:
