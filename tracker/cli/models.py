@@ -72,7 +72,7 @@ def models_list(as_json: JsonOption = False) -> None:
             ]
         )
         return
-    table = Table("model", "state", "runs", "size")
+    table = Table("model", "state", "used here", "size")
     for row in rows:
         size = f"{row.size_bytes / 1e6:.1f} MB" if row.size_bytes else ""
         runs = "yes" if row.name in running else "no"
