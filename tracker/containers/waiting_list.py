@@ -8,7 +8,12 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+import numpy as np
+
 from tracker.errors import RecordingError
+
+#: Numbers and stamps have 64 bits; half of them leave room for those that follow.
+_NUMBERS_END = 2**62
 
 
 class CallState(str, Enum):
@@ -122,8 +127,10 @@ class WaitingList:
             said = json.loads(text)
             callers = tuple(_caller(item) for item in said["callers"])
             selected_id = said["selected_id"]
-            found = WaitingList(int(said["stamp_ns"]), callers, selected_id and int(selected_id))
-        except (KeyError, TypeError, ValueError) as error:
+            found = WaitingList(
+                _whole(said["stamp_ns"]), callers, selected_id and _whole(selected_id)
+            )
+        except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
             raise RecordingError(
                 f"This is not a waiting list ({type(error).__name__}: {error}). Delete the file; "
                 "the list then starts empty."
@@ -134,12 +141,22 @@ class WaitingList:
 def _caller(item: Mapping[str, Any]) -> Caller:
     x, y = map(float, item["xy_m"])
     xx, xy, yy = map(float, item["covariance_m2"])
-    stamps = {name: int(item[name]) for name in Caller.__slots__ if name.endswith("_ns")}
+    if not np.isfinite([x, y, xx, xy, yy]).all() or min(xx, yy, xx * yy - xy * xy) < 0.0:
+        raise ValueError("a place or covariance is invalid")
+    stamps = {name: _whole(item[name]) for name in Caller.__slots__ if name.endswith("_ns")}
     return Caller(
-        id=int(item["id"]),
+        id=_whole(item["id"], least=1),
         state=CallState(item["state"]),
         is_up=False,
         xy_m=(x, y),
         covariance_m2=(xx, xy, yy),
         **stamps,
     )
+
+
+def _whole(said: Any, least: int = 0) -> int:
+    """A number of a customer, or a stamp."""
+    number = int(said)
+    if not least <= number < _NUMBERS_END:
+        raise ValueError(f"{number} is out of range")
+    return number

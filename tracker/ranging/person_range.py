@@ -44,7 +44,8 @@ def owner_side(hands: Hands, roll_rad: float = 0.0) -> FloatArray:
     toward = across @ np.array([np.cos(roll_rad), -np.sin(roll_rad)])
     length, breadth = _palm(hands.landmarks_px[:, _PALM])
     side = -np.clip(toward / np.maximum(1.0, np.maximum(length, breadth)), -1.0, 1.0)
-    return np.asarray(np.where(hands.is_owned, 0.0, side))
+    # A landmark that a detector leaves out tells nothing either.
+    return np.asarray(np.where(hands.is_owned, 0.0, np.nan_to_num(side)))
 
 
 def size_misfit(hands: Hands, camera: CameraModel, along_m: FloatArray) -> FloatArray:

@@ -5,13 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from tracker.containers import WaitingList
+from tracker.containers import Caller, WaitingList
 from tracker.errors import OutputError, RecordingError
 from tracker.outputs.aside import writing_into
+
+#: How far somebody on the list moves, and for how long a hand is up, until that is stored.
+_MOVED_M, _UP_NS = 0.5, 1_000_000_000
 
 
 class KeptCalls:
     """The file that `waiting_list_file` names, written whenever a call changes.
+
+    Also once a second while a hand is up, and when somebody moves: a call that seems short would
+    end after the restart, and the robot would drive to an old place.
 
     Args:
         path: Its name.
@@ -33,8 +39,8 @@ class KeptCalls:
             return None
 
     def keep(self, calls: WaitingList) -> None:
-        """Write the list if some call has begun, changed its state or ended since."""
-        outline = [(caller.id, caller.state, caller.called_ns) for caller in calls.callers]
+        """Write the list if some call has begun, changed or ended since."""
+        outline = [_outline(caller) for caller in calls.callers]
         if outline == self._kept:
             return
         self._kept = outline
@@ -43,3 +49,10 @@ class KeptCalls:
                 new(self._path.name).write_text(calls.to_json(), encoding="utf-8")
         except OutputError as error:
             self._warn(f"waiting_list_file: {error}")
+
+
+def _outline(caller: Caller) -> tuple[object, ...]:
+    """What a change of is worth storing."""
+    x, y = (round(place_m / _MOVED_M) for place_m in caller.xy_m)
+    up = (caller.called_ns, caller.is_up, caller.last_up_ns // _UP_NS)
+    return caller.id, caller.state, *up, x, y

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,8 +22,28 @@ def test_a_kept_list_comes_back_with_nobody_in_sight():
     assert (anna.track_id, anna.is_up) == (None, False)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"stamp_ns": 1, "callers": [{}]}', "null"])
+INFINITE = '{"stamp_ns": 1, "selected_id": Infinity, "callers": []}'
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "[]", "{}", '{"stamp_ns": 1, "callers": [{}]}', "null", INFINITE, "[" * 100_000],
+    ids=range(7),
+)
 def test_what_is_no_kept_list_is_refused(text):
+    with pytest.raises(RecordingError, match="not a waiting list"):
+        WaitingList.from_json(text)
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        {"id": 0}, {"id": -5}, {"id": 2**63}, {"xy_m": (float("nan"), 0.0)},
+        {"covariance_m2": (-1.0, 0.0, 1.0)}, {"called_ns": -1},
+    ],
+)  # fmt: skip
+def test_a_kept_list_with_an_impossible_caller_is_refused(damage):
+    text = WaitingList(10**18, (replace(ANNA, **damage),), None).to_json()
     with pytest.raises(RecordingError, match="not a waiting list"):
         WaitingList.from_json(text)
 

@@ -55,3 +55,7 @@ def test_a_landmark_beyond_the_lens_s_range_tells_no_length():
     hands = Hands(points, one, one, one.astype(bool), one)
     length_px, breadth_px = palms_px(hands, camera)
     assert 0.5 < range_of_palm_m(np.maximum(length_px, breadth_px), camera)[0] < 2.0
+
+
+def test_a_hand_without_a_thumb_does_not_say_on_which_side_its_owner_stands():
+    assert owner_side(hand_with_thumb_at((np.nan, np.nan))).tolist() == [0.0]

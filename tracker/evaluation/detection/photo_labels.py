@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -57,7 +58,7 @@ def read_photos(folder: str | Path) -> tuple[LabeledPhoto, ...]:
             photo,
             traits={
                 **({"folder": photo.path.parent.name} if len(inner) > 1 else {}),
-                **traits.get(photo.path.relative_to(folder).as_posix(), {}),
+                **traits.get(Path(os.path.relpath(photo.path, folder)).as_posix(), {}),
             },
         )
         for photo in photos

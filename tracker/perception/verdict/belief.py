@@ -60,5 +60,5 @@ def update_belief(
     faded = FIRST_LOG_ODDS
     if np.isfinite(before):
         fade_s = CALL_FADES_S if before >= CALLS_FROM else FADE_S
-        faded += (before - FIRST_LOG_ODDS) * float(np.exp(-passed_s / fade_s))
+        faded += (before - FIRST_LOG_ODDS) * float(np.exp(-max(passed_s, 0.0) / fade_s))
     return float(np.clip(faded + IMAGE_SHARE * evidence, LOG_ODDS_MIN, LOG_ODDS_MAX))

@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 from tracker.camera import CameraModel
 from tracker.containers import DepthImage, FloatArray, depth_in_meters
+from tracker.errors import ShapeError
 from tracker.geometry import RigidTransform
 
 #: Of the columns, and with them of the rows, about so many are looked at: at 5 m, points of a
 #: camera of 70 degrees are 4 cm apart, so that a body still shows a hundred.
 _COLUMNS = 160
+#: Fewer rows or columns of the grid show nobody.
+_LEAST = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,6 +72,11 @@ def depth_points(
     pixels = image.read()
     height, width = pixels.shape[:2]
     step = max(round(width / _COLUMNS), 1)
+    if min(height // step, width // step) < _LEAST:
+        raise ShapeError(
+            f"A depth image of {width} x {height} pixels came, too small to show anybody; is it "
+            "the right topic?"
+        )
     half = step // 2
     depth_m = depth_in_meters(pixels[half::step, half::step]).reshape(-1)
     rays, spacing_rad = _grid_rays(camera.for_picture(width, height), step)

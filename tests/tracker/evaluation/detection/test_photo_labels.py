@@ -86,3 +86,11 @@ def test_attributes_without_files_are_refused(labels, tmp_path):
     (tmp_path / "attributes.csv").write_text("photo,hand\na.jpg,fist\n", encoding="utf-8")
     with pytest.raises(RecordingError, match="line 1: there is no column `file`"):
         read_photos(tmp_path)
+
+
+def test_photos_may_lie_elsewhere(tmp_path):
+    (tmp_path / "a.jpg").touch()
+    (tmp_path / "labels").mkdir()
+    (tmp_path / "labels/labels.csv").write_text(f"file,raised\n{tmp_path / 'a.jpg'},1\n")
+    (photo,) = read_photos(tmp_path / "labels")
+    assert photo.path.name == "a.jpg"

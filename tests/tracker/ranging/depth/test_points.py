@@ -39,8 +39,14 @@ def test_intrinsics_of_another_size_are_scaled():
 
 @pytest.mark.parametrize(
     ("shape", "error"),
-    [((480, 640, 3), ShapeError), ((100, 640), ConfigError)],
-    ids=["three channels", "another shape"],
+    [
+        ((480, 640, 3), ShapeError),
+        ((100, 640), ConfigError),
+        ((1, 640), ShapeError),
+        ((480, 1), ShapeError),
+        ((1, 1), ShapeError),
+    ],
+    ids=["three channels", "another shape", "one row", "one column", "one pixel"],
 )
 def test_what_is_no_depth_image_of_this_camera_is_refused(shape, error):
     image = DepthImage.of(1, "", np.zeros(shape, np.float32))
