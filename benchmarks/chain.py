@@ -21,6 +21,7 @@ from rich.table import Table
 from tracker import Config, Pipeline
 from tracker.containers import CameraImage, Hands
 from tracker.perception import HandDetector, open_detector
+from tracker.perception.detector import NO_HINTS, Hints
 from tracker.perception.models import ModelStore, ensure_models
 from tracker.replay.outputs import ReplayOutputs
 from tracker.simulation import load_scene, simulate
@@ -30,9 +31,9 @@ def timed(detector: HandDetector) -> list[float]:
     """Let a detector note the seconds that each image takes it; gives the list it writes to."""
     find, seconds = detector.find, []
 
-    def find_and_note(image: CameraImage) -> Hands:
+    def find_and_note(image: CameraImage, hints: Hints = NO_HINTS) -> Hands:
         begin = time.perf_counter()
-        hands = find(image)
+        hands = find(image, hints)
         seconds.append(time.perf_counter() - begin)
         return hands
 
