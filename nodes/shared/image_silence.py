@@ -1,4 +1,4 @@
-"""How long may images fail to come before nobody is reported any more?"""
+"""When the camera is silent for too long, nobody is reported."""
 
 from __future__ import annotations
 

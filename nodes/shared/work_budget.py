@@ -1,4 +1,4 @@
-"""How much may perception do per image? Less, before the node is too slow."""
+"""How many model runs may an image take? Fewer while the node is close to too slow."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The program `raised-hand`, from its first moment."""
+"""The program `raised-hand`: where it starts."""
 
 from typing import NoReturn
 
@@ -6,7 +6,7 @@ from tracker.terminal.program import run_program
 
 
 def main() -> NoReturn:
-    """Run the command line; every foreseen failure is one line and a status."""
+    """Run the command line; an expected failure prints one line and sets the exit status."""
     run_program("raised-hand", _body)
 
 

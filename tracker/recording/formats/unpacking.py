@@ -1,4 +1,4 @@
-"""How is something packed unpacked without trusting what it says of its size? Within a limit."""
+"""Unpacks compressed data up to a limit, whatever size it claims to have."""
 
 from __future__ import annotations
 
