@@ -43,11 +43,8 @@ class Health:
         words = f"{rate_hz:.1f} pictures a second, {busy_ms:.0f} ms each"
         lines = [_line("camera", True, words)]
         if scans:
-            lines.append(
-                _line(
-                    "laser", scans >= 0.9 * count, f"used by {scans} of the last {count} pictures"
-                )
-            )
+            words = f"used by {scans} of the last {count} pictures"
+            lines.append(_line("laser", scans >= 0.9 * count, words))
         else:
             lines.append(_line("laser", False, "no scan is used: directions without distances"))
         missing = f"no position in {count - poses} pictures"

@@ -30,8 +30,8 @@ class Teller:
         now = {caller.id: (caller.is_up, caller.state) for caller in result.waiting_list.callers}
         for caller in result.waiting_list.callers:
             was_up, state = self._before.get(caller.id, (False, CallState.WAITING))
-            x, y = np.round(caller.xy_m, 1) + 0.0  # no -0.0
             if caller.is_up and not was_up:
+                x, y = np.round(caller.xy_m, 1) + 0.0  # no -0.0
                 self._say(f"#{caller.id} raises a hand at x {x:.1f} m, y {y:.1f} m")
             if caller.state is not state:
                 self._say(f"#{caller.id} {caller.state.value.replace('_', ' ')}")

@@ -27,7 +27,8 @@ class HandRays:
         origin: x_m, y_m, yaw_rad of the camera in the fixed frame.
         bearing_rad: Shape (H,), from the camera's yaw, counter-clockwise; NaN where unknown. That
             of the owner's torso where a pose has told it.
-        wrist_bearing_rad: Shape (H,), of the hand itself, whoever owns it.
+        wrist_bearing_rad: Shape (H,): direction to the wrist, also where `bearing_rad` is that of
+            the torso.
         bearing_std_rad: Shape (H,), of the pixel noise alone.
         roll_rad: Of the camera: what is level in the room is turned so far in the picture,
             counter-clockwise.
@@ -67,8 +68,9 @@ def hand_rays(
     """
     pixels = np.where(hands.is_owned[:, None], hands.torso_px, hands.wrist_px)
     origin = fixed_from_camera.planar
-    bearing = _bearing_rad(pixels, camera, fixed_from_camera)
-    wrist = _bearing_rad(hands.wrist_px, camera, fixed_from_camera)
+    bearing = wrist = _bearing_rad(hands.wrist_px, camera, fixed_from_camera)
+    if hands.is_owned.any():
+        bearing = _bearing_rad(pixels, camera, fixed_from_camera)
     noise_rad = wrist_noise_px(hands.length_px, config) * _turn_per_pixel_rad(
         pixels, camera, fixed_from_camera
     )

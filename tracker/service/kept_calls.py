@@ -52,7 +52,7 @@ class KeptCalls:
 
 
 def _outline(caller: Caller) -> tuple[object, ...]:
-    """What a change of is worth storing."""
+    """The parts of a caller that are stored again when they change."""
     x, y = (round(place_m / _MOVED_M) for place_m in caller.xy_m)
     up = (caller.called_ns, caller.is_up, caller.last_up_ns // _UP_NS)
     return caller.id, caller.state, *up, x, y

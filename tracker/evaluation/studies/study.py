@@ -257,7 +257,7 @@ def _mean(name: str, values: FloatArray, good: str, most: float = np.inf) -> Fig
 
 def _root_mean(name: str, squares: FloatArray, good: str) -> Figure:
     mean = _mean(name, squares, good)
-    value, low, high = (float(np.sqrt(max(x, 0.0))) for x in (mean.value, mean.low, mean.high))
+    value, low, high = (float(np.sqrt(x)) for x in (mean.value, mean.low, mean.high))
     return Figure(name, value, low, high, good=good)
 
 

@@ -121,7 +121,7 @@ class HandFollower:
         bgr = self.seen = self._clearer.clear(image.bgr)
         places = places if room else 0
         searches = self._searches(bgr, regions, expected_px, config, places)
-        read = Regions.concatenate(regions, guesses) if len(guesses) else regions
+        read = Regions.concatenate(regions, guesses)
         hands, palms = self._reader.read_beside(bgr, read, searches)
         rows = np.concatenate([rows, np.full(len(guesses), -1)])
         searched_s = time.perf_counter()
@@ -133,8 +133,7 @@ class HandFollower:
             rows = np.concatenate([rows, np.full(len(found), -1)])
         hands, again = self._read_again(bgr, hands, rows < 0, read, config)
         keep = np.flatnonzero(hands.score >= config.tracking_confidence)
-        if len(keep) > 1:
-            keep = keep[first_of_each_hand(hands[keep])]
+        keep = keep[first_of_each_hand(hands[keep])]
         ended_s = time.perf_counter()
         self.work = PerceptionWork(
             len(searches),
@@ -143,8 +142,7 @@ class HandFollower:
             ended_s - searched_s,
             ended_s - began_s,
         )
-        if len(keep) < len(hands):
-            hands, rows = hands[keep], rows[keep]
+        hands, rows = hands[keep], rows[keep]
         self._follow(hands, config)
         return hands, rows
 

@@ -13,7 +13,8 @@ FIRST_LOG_ODDS, FADE_S, CALL_FADES_S = -1.75, 1.0, 2.0
 CALLS_FROM = 1.0
 #: Images of one hand are alike; each adds this share of its evidence.
 IMAGE_SHARE = 0.5
-#: One image alone makes no call, whatever it shows: a pose that was misread lasts for one.
+#: One image alone makes no call of a new hand, whatever it shows, since a pose that was misread
+#: lasts for one: less than (CALLS_FROM - FIRST_LOG_ODDS) / IMAGE_SHARE.
 IMAGE_MAX = 5.4
 #: No belief is weaker or stronger, so that a hand that goes up, or down, is soon noticed.
 LOG_ODDS_MIN, LOG_ODDS_MAX = -3.0, 6.0
