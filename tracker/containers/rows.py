@@ -70,7 +70,8 @@ class Rows:
                 array = frozen(given, dtype)
             if array is not given:
                 object.__setattr__(self, name, array)
-            fits = fits and _is_like(array.shape, (count, *column.shape))
+            needed = (count, *column.shape)
+            fits = fits and (array.shape == needed or _is_like(array.shape, needed))
         if not fits:
             shapes = ", ".join(f"{name} {getattr(self, name).shape}" for name in self._columns)
             raise ShapeError(f"{type(self).__name__} disagree in shape: {shapes}.")

@@ -24,7 +24,6 @@ from tracker.perception.bodies.owners import (
 )
 from tracker.perception.bodies.people_watch import LOOK_PLACES, PeopleWatch
 from tracker.perception.detector import NO_HINTS, Hints
-from tracker.perception.hands.gray import tint_gray
 from tracker.perception.hands.hand_finder import HandFinder
 from tracker.perception.pictures import continues
 from tracker.perception.pose_hands import draw_hands
@@ -121,9 +120,10 @@ class CallFinder:
         nothing = np.zeros(len(hands))
         alone = Seen(nothing == 0.0, np.full(len(hands), -1), nothing > 0.0, nothing)
         may_call = log_odds(gather_evidence(hands, Bodies.none(), alone)) > _MAY_CALL
-        seen = image.bgr if self._hands.seen is None else self._hands.seen
-        picture = replace(image, bgr=tint_gray(seen))
-        bodies = self._watch.find(picture, hands, may_call, rests=is_pressed)
+        assert self._hands.seen is not None
+        picture = replace(image, bgr=self._hands.seen.tinted_bgr)
+        moved_px = self._hands.seen.moved_px
+        bodies = self._watch.find(picture, hands, may_call, moved_px, rests=is_pressed)
         if self._watch.looks_next and not is_pressed:
             self._told = replace(self._told, spared=LOOK_PLACES)
         return bodies

@@ -28,6 +28,7 @@ _OPEN_HAND = np.array(
         (-0.42, 0.85), (-0.48, 1.2), (-0.51, 1.4), (-0.54, 1.58),
     ]
 )  # fmt: skip
+_NO_HANDS = Hands.none()
 
 
 class PoseHands:
@@ -95,6 +96,8 @@ def draw_hands(
         image_size: Width and height of the picture in pixels.
         config: The pose group, and `raise_rule` for what `raise_measure` means.
     """
+    if not arms.any():
+        return _NO_HANDS
     person, side = np.nonzero(arms)
     wrist = bodies.points_px[person, np.array(WRISTS)[side]]
     fingers = _fingers_direction(bodies)[person, side]

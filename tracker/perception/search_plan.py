@@ -87,8 +87,8 @@ class SearchPlan:
         weight[0] = 0.0  # it has a period of its own
         is_due = self._turn - self._rotation_turn[0] >= WHOLE_PERIOD
         chosen: list[int] = []
+        age = np.concatenate([self._turn - self._rotation_turn, self._ages(places[tiles:])])
         while len(chosen) < min(count, len(places)):
-            age = np.concatenate([self._turn - self._rotation_turn, self._ages(places[tiles:])])
             need = weight * age
             need[chosen] = -1.0
             place = 0 if is_due and not chosen else int(np.argmax(need))
@@ -96,6 +96,8 @@ class SearchPlan:
             self._lately.append((self._turn, places[place]))
             if place < tiles:
                 self._rotation_turn[place] = self._turn
+            is_same = box_overlap(places[[place]], places[tiles:])[0] > SAME_PLACE_OVERLAP
+            age[tiles:][is_same] = 0.0
         windows = places[chosen]
         around = np.flatnonzero(np.array(chosen) >= tiles)
         windows[around] += self._sway(windows[around])

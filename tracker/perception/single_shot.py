@@ -146,14 +146,14 @@ def decode_rows(
         anchors: Shape (A, 2), in pixels of the input.
         confidence: Score from which a row counts.
     """
-    score = probability(logits)
-    sure = np.flatnonzero(score >= confidence)
+    sure = np.flatnonzero(logits >= float(np.log(confidence / (1.0 - confidence))))
     sure = sure[np.isfinite(boxes[sure]).all(axis=-1)]
+    score = probability(logits[sure])
     rows, anchor = boxes[sure].astype(np.float64), anchors[sure]
     center, half = rows[:, :2] + anchor, rows[:, 2:4] / 2
     keypoints = rows[:, 4:].reshape(len(rows), (boxes.shape[1] - 4) // 2, 2) + anchor[:, None]
     corners = np.concatenate([center - half, center + half], axis=-1)
-    return merge_rows(Detections(corners, keypoints, score[sure]))
+    return merge_rows(Detections(corners, keypoints, score))
 
 
 def merge_rows(found: Detections) -> Detections:

@@ -10,6 +10,8 @@ from tracker.perception.bodies.bodies import Bodies
 from tracker.perception.bodies.people_watch import PeopleWatch
 from tracker.perception.call_finder import CallFinder
 from tracker.perception.detector import Hints
+from tracker.perception.movement import Movement
+from tracker.perception.seen_picture import SeenPicture
 
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
 PHONING = {"right_elbow": (165, 120), "right_wrist": (183, 78)}
@@ -20,7 +22,7 @@ class Told:
     """A hand detector that always finds the same, and notes what it is told."""
 
     work = PerceptionWork(places=2)
-    seen = np.full((480, 640, 3), (90, 130, 160), np.uint8)
+    seen = SeenPicture(np.full((480, 640, 3), (90, 130, 160), np.uint8), Movement())
 
     def __init__(self, answer):
         self.answer = answer
@@ -147,7 +149,7 @@ def test_without_a_watch_the_hands_decide_alone(open_hand):
 def test_bodies_are_looked_for_in_the_picture_that_the_hands_models_saw(upright_hand):
     hands, look = Told(upright_hand((148, 70))), Look(Bodies.none())
     CallFinder(hands, PeopleWatch(look), Config()).find(image(0))
-    assert look.pictures[0] is hands.seen
+    assert look.pictures[0] is hands.seen.bgr
 
 
 def test_an_arm_without_a_hand_is_suggested_to_the_hands_models(body):

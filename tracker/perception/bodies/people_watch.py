@@ -17,7 +17,6 @@ from tracker.containers import BoolArray, CameraImage, FloatArray, Hands, IntArr
 from tracker.perception.bodies.bodies import Bodies, one_row_each
 from tracker.perception.bodies.body_look import BodyLook
 from tracker.perception.bodies.owners import arms_without_hand, find_owners, hand_size_px
-from tracker.perception.movement import Movement
 from tracker.perception.pictures import Window, continues, upright_strips
 from tracker.perception.search_plan import clip_boxes
 
@@ -54,12 +53,10 @@ class PeopleWatch:
 
     def __init__(self, look: BodyLook) -> None:
         self._look = look
-        self._movement = Movement()
         self.reset()
 
     def reset(self) -> None:
         """Forget everybody."""
-        self._movement.reset()
         self._last: CameraImage | None = None
         self._known = Bodies.none()
         self._questions: list[_Question] = []
@@ -77,7 +74,13 @@ class PeopleWatch:
         return self._last is not None and self._strip_need(self._last.stamp_ns + 1e8)[0] >= 1.0
 
     def find(
-        self, image: CameraImage, hands: Hands, calling: BoolArray, *, rests: bool = False
+        self,
+        image: CameraImage,
+        hands: Hands,
+        calling: BoolArray,
+        moved_px: FloatArray,
+        *,
+        rests: bool = False,
     ) -> Bodies:
         """Everybody seen of late; those looked at in this very image have age 0.
 
@@ -87,6 +90,7 @@ class PeopleWatch:
             image: The next one.
             hands: Found in it.
             calling: Shape (H,): hands that may call, for themselves; others can wait.
+            moved_px: Shape (M, 4): boxes in which something moved.
             rests: Whether strips have to wait, as there is no time.
         """
         if self._last is None or not continues(self._last, image):
@@ -94,11 +98,12 @@ class PeopleWatch:
         now_ns, passed_ns = image.stamp_ns, image.stamp_ns - (self._last or image).stamp_ns
         self._last = image
         known = self._known.grown_older(passed_ns / 1e9)
-        self._known = known = known[known.age_s <= FORGET_AFTER_S]
+        if (known.age_s > FORGET_AFTER_S).any():
+            known = known[known.age_s <= FORGET_AFTER_S]
+        self._known = known
         self._questions = [
             item for item in self._questions if now_ns - item.stamp_ns <= FORGET_AFTER_S * 1e9
         ]
-        moved_px = self._movement.boxes(image.bgr)
         self._moved_ns[_nearest_strips(moved_px, self._strips)] = now_ns
         hand_need = self._hand_needs(hands, calling, now_ns)
         body_need = self._body_needs(hands, calling)

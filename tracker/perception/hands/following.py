@@ -23,7 +23,6 @@ from tracker.containers import (
     PerceptionWork,
 )
 from tracker.perception.hands.clearing import PictureClearer
-from tracker.perception.hands.gray import tint_gray
 from tracker.perception.hands.landmarks import LandmarkReader, Landmarks
 from tracker.perception.movement import Movement
 from tracker.perception.pictures import Window, continues
@@ -35,6 +34,7 @@ from tracker.perception.regions import (
     regions_from_palms,
 )
 from tracker.perception.search_plan import SearchPlan
+from tracker.perception.seen_picture import SeenPicture
 from tracker.perception.single_shot import Detections, SingleShot
 from tracker.perception.verdict.raise_rules import WRIST
 
@@ -58,6 +58,7 @@ PROMISING_SCORE, MOST_AGAIN = 0.1, 2
 #: drawn hands below 24 px one of twenty fewer.
 SMOOTH_PX, SMOOTH_FROM_PX = 1.0, 48.0
 _NOWHERE = np.zeros((0, 4))
+_NO_REGIONS = Regions.none()
 
 
 class HandFollower:
@@ -76,11 +77,11 @@ class HandFollower:
         self._plan: SearchPlan | None = None
         self._clearer = PictureClearer()
         self._movement = Movement()
-        self._regions = Regions.none()
+        self._regions = _NO_REGIONS
         self._rows = np.zeros(0, dtype=np.int64)
         self._last: CameraImage | None = None
         self.work = PerceptionWork()
-        self.seen: ImageArray | None = None
+        self.seen: SeenPicture | None = None
 
     def step(
         self,
@@ -118,9 +119,10 @@ class HandFollower:
             places = min(places, budget - len(regions))
         places = max(1, places - len(guesses) - spared)
         began_s = time.perf_counter()
-        bgr = self.seen = self._clearer.clear(image.bgr)
+        self.seen = seen = SeenPicture(self._clearer.clear(image.bgr), self._movement)
+        bgr = seen.bgr
         places = places if room else 0
-        searches = self._searches(bgr, regions, expected_px, config, places)
+        searches = self._searches(seen, regions, expected_px, config, places)
         read = Regions.concatenate(regions, guesses)
         hands, palms = self._reader.read_beside(bgr, read, searches)
         rows = np.concatenate([rows, np.full(len(guesses), -1)])
@@ -148,7 +150,7 @@ class HandFollower:
 
     def reset(self) -> None:
         """Forget all hands."""
-        self._regions = Regions.none()
+        self._regions = _NO_REGIONS
         self._rows = np.zeros(0, dtype=np.int64)
         self._clearer.reset()
         self._movement.reset()
@@ -157,7 +159,7 @@ class HandFollower:
 
     def _searches(
         self,
-        bgr: ImageArray,
+        seen: SeenPicture,
         known: Regions,
         expected_px: FloatArray,
         config: Config,
@@ -166,13 +168,13 @@ class HandFollower:
         """The palm searches of this image, to be called beside each other."""
         if count == 0:
             return []
-        bgr = tint_gray(bgr)
+        bgr = seen.tinted_bgr
         size = (bgr.shape[1], bgr.shape[0])
-        moved_px = self._movement.boxes(bgr)
         whole = np.array([0, 0, *size])
         if self._plan is None:
             self._plan = SearchPlan(size)
-        windows = self._plan.choose(count, _without(expected_px, known), _without(moved_px, known))
+        likely_px = [_without(boxes_px, known) for boxes_px in (expected_px, seen.moved_px)]
+        windows = self._plan.choose(count, *likely_px)
         confidence, shrink = config.detection_confidence, config.downscale_factor
         return [
             partial(self._whole.find, bgr, confidence, shrink=shrink)
@@ -222,7 +224,7 @@ class HandFollower:
     def _guesses(self, suggested: Regions | None, known: Regions, config: Config) -> Regions:
         """The suggested regions that are worth a reading."""
         if not suggested:
-            return Regions.none()
+            return _NO_REGIONS
         suggested = suggested[_is_readable(suggested, config)]
         return drop_known(suggested, known)[: config.max_hands - len(known)]
 
@@ -278,7 +280,7 @@ def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:
 def regions_of(found: Sequence[Detections], config: Config) -> Regions:
     """The regions of palms from several searches, the surest first."""
     if not any(map(len, found)):
-        return Regions.none()
+        return _NO_REGIONS
     palms = Detections.concatenate(*found)
     palms = palms[np.argsort(-palms.score, kind="stable")]
     regions = regions_from_palms(palms.boxes_px, palms.keypoints_px)

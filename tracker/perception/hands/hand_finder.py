@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from tracker.config import Config
-from tracker.containers import CameraImage, Hands, ImageArray, PerceptionWork
+from tracker.containers import CameraImage, Hands, PerceptionWork
 from tracker.perception.detector import NO_HINTS, Hints
 from tracker.perception.hands.following import HandFollower
 from tracker.perception.hands.landmarks import LandmarkReader
 from tracker.perception.models import ModelStore
 from tracker.perception.models.sessions import open_session
 from tracker.perception.regions import regions_from_landmarks
+from tracker.perception.seen_picture import SeenPicture
 from tracker.perception.single_shot import SingleShot
 from tracker.perception.verdict.raise_rules import judge_raised, rule_refusals
 
@@ -48,7 +49,7 @@ class HandFinder:
         return self._follower.work
 
     @property
-    def seen(self) -> ImageArray | None:
+    def seen(self) -> SeenPicture | None:
         """The last image as the models saw it; None before the first."""
         return self._follower.seen
 

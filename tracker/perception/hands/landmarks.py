@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, TypeVar
 
 import cv2
@@ -13,6 +13,7 @@ import onnxruntime
 
 from tracker.containers import FloatArray, ImageArray
 from tracker.containers.rows import Column, Rows
+from tracker.perception.abreast import Abreast
 from tracker.perception.models import ModelStore, file_to_run
 from tracker.perception.models.sessions import open_session
 from tracker.perception.pictures import cut_out
@@ -42,7 +43,7 @@ class LandmarkReader:
 
     Args:
         alone: Session for a single hand; may use several threads, and does in single precision.
-        abreast: Session of one thread, called from `threads` Python threads at once; two
+        one_thread: Session of one thread, called from `threads` Python threads at once; two
             half-loaded cores do four hands in 0.58 of the time that way, where two threads
             inside one call save next to nothing.
         threads: Processor threads.
@@ -51,12 +52,12 @@ class LandmarkReader:
     def __init__(
         self,
         alone: onnxruntime.InferenceSession,
-        abreast: onnxruntime.InferenceSession,
+        one_thread: onnxruntime.InferenceSession,
         threads: int,
     ) -> None:
         self._alone = alone
-        self._abreast = abreast
-        self._pool = ThreadPoolExecutor(threads, "hand-models") if threads > 1 else None
+        self._one_thread = one_thread
+        self._abreast = Abreast(threads)
 
     @staticmethod
     def open(
@@ -72,13 +73,13 @@ class LandmarkReader:
         how: dict[str, Any] = {
             "fixed_sizes": {"batch": 1}, "provider": provider, "numbers": numbers
         }  # fmt: skip
-        abreast = open_session(store, name, threads=1, **how)
-        alone = abreast
+        one_thread = open_session(store, name, threads=1, **how)
+        alone = one_thread
         # In 8 bits a second thread gains nothing: it is late for each of so many short steps, and
         # one that spins in wait for them takes twice the processor's time.
         if threads > 1 and file_to_run(store, name, numbers, provider) == name:
             alone = open_session(store, name, threads=threads, **how)
-        return LandmarkReader(alone, abreast, threads)
+        return LandmarkReader(alone, one_thread, threads)
 
     def read_beside(
         self, bgr: ImageArray, regions: Regions, calls: Sequence[Callable[[], T]]
@@ -94,14 +95,11 @@ class LandmarkReader:
             The landmarks, and what the calls returned.
         """
         to_image = image_from_input(regions, INPUT_PX)
-        if self._pool is None or len(regions) + len(calls) < 2:
-            returned = [call() for call in calls]
-            answers = [_look(self._alone, bgr, matrix) for matrix in to_image]
-        else:
-            waiting = [self._pool.submit(call) for call in calls]
-            looks = [self._pool.submit(_look, self._abreast, bgr, matrix) for matrix in to_image]
-            returned = [call.result() for call in waiting]
-            answers = [look.result() for look in looks]
+        is_alone = len(regions) + len(calls) < 2
+        session = self._alone if is_alone else self._one_thread
+        looks = [partial(_look, session, bgr, matrix) for matrix in to_image]
+        all_returned: list[Any] = self._abreast.run([*calls, *looks])
+        returned, answers = all_returned[: len(calls)], all_returned[len(calls) :]
         points = np.array([answer[0] for answer in answers]).reshape(-1, 21, 2)
         projected = points @ to_image[:, :, :2].transpose(0, 2, 1) + to_image[:, None, :, 2]
         hands = Landmarks(

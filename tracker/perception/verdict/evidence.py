@@ -54,6 +54,8 @@ def gather_evidence(hands: Hands, bodies: Bodies, seen: Seen) -> FloatArray:
 
     Shape (H, F), in the order of `weights.NAMES`.
     """
+    if len(hands) == 0:
+        return np.zeros((0, len(NAMES)))
     owned, found = (flags.astype(np.float64) for flags in (seen.owner >= 0, seen.is_found))
     shape = {name: found * column for name, column in _shapes_of(hands).items()}
     arm = {name: np.zeros(len(hands)) for name in _ARM}
