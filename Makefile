@@ -57,7 +57,7 @@ docs: $(VENV)/.installed-docs  ## build the pages of the documentation into site
 
 bench:  ## time the product against its peers, some of which want numpy 1
 	@$(MAKE) --no-print-directory VENV=.venv-bench .venv-bench/.installed-bench
-	@set -e; for file in benchmarks/[a-z]*.py; do echo "$$file"; .venv-bench/bin/python "$$file"; done
+	@set -e; for file in $(filter-out benchmarks/fit_%,$(wildcard benchmarks/[a-z]*.py)); do echo "$$file"; .venv-bench/bin/python "$$file"; done
 
 notebooks: $(VENV)/.installed-notebooks  ## open the notebooks
 	$(BIN)/jupyter lab notebooks

@@ -22,9 +22,10 @@ from tracker import Config, Pipeline
 from tracker.containers import CameraImage, Hands
 from tracker.perception import HandDetector, open_detector
 from tracker.perception.detector import NO_HINTS, Hints
-from tracker.perception.models import ModelStore, ensure_models
+from tracker.perception.models import ModelStore, ensure_models, processor_kind
 from tracker.replay.outputs import ReplayOutputs
 from tracker.simulation import load_scene, simulate
+from tracker.tracking.machine_frame import compile_tracker
 
 
 def timed(detector: HandDetector) -> list[float]:
@@ -78,6 +79,8 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=20.0)
     words = parser.parse_args()
     ensure_models(ModelStore())
+    compile_tracker(print)
+    print(processor_kind())
     for complexity in (0, 1):
         config = Config(model_complexity=complexity)
         period_ms = 1e3 / config.processing_rate

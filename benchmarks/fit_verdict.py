@@ -20,10 +20,10 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from _verdict_fit import fit_weights
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks._verdict_fit import fit_weights
 from tracker.config import Config
 from tracker.containers import CameraImage, FloatArray, ImageArray, IntArray
 from tracker.evaluation.detection.clip_study import read_clips

@@ -18,8 +18,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import platform
 import subprocess
 import sys
 import time
@@ -30,10 +28,6 @@ import numpy as np
 
 WIDTH, HEIGHT = 640, 480
 WARM_UP = 10
-#: What says how fast a processor multiplies, in Linux' names.
-INSTRUCTION_SETS = (
-    "avx2", "fma", "avx512f", "avx_vnni", "avx512_vnni", "avx512_bf16", "asimd", "asimddp", "i8mm",
-)  # fmt: skip
 Step = Callable[[int, np.ndarray], tuple[float, int]]
 
 
@@ -181,14 +175,10 @@ def main() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from tracker.perception.models import processor_features
+    from tracker.perception.models import processor_kind
 
-    sets = ", ".join(name for name in INSTRUCTION_SETS if name in processor_features())
     beside = "one of them busy" if words.busy else "nothing started beside"
-    title = (
-        f"milliseconds of a frame; all found every hand\n{platform.machine()}, {os.cpu_count()} "
-        f"processors, {beside}; {sets or 'instruction sets unknown'}"
-    )
+    title = f"milliseconds of a frame; all found every hand; {beside}\n{processor_kind()}"
     table = Table(title=title, title_justify="left")
     for column in ("hands", "", "median", "p99", "of mediapipe's median"):
         table.add_column(column, justify="right")

@@ -14,10 +14,10 @@ import time
 from pathlib import Path
 
 import numpy as np
+from _annotated_scans import read_annotated_scans, score_clusters
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks._annotated_scans import read_annotated_scans, score_clusters
 from tracker import Config
 from tracker.geometry import RigidTransform
 from tracker.ranging import Background, locate_scan, scan_people

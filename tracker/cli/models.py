@@ -57,7 +57,7 @@ def models_list(as_json: JsonOption = False) -> None:
     from rich.table import Table
 
     from tracker.config import Config
-    from tracker.perception.models import ModelStore, runs_here
+    from tracker.perception.models import ModelStore, processor_kind, runs_here
 
     store = ModelStore()
     rows = store.status()
@@ -79,6 +79,7 @@ def models_list(as_json: JsonOption = False) -> None:
         table.add_row(row.name, row.state.value, runs, size)
     console.print(table)
     console.print(f"each as MODEL.onnx in {store.directory}", highlight=False, soft_wrap=True)
+    console.print(f"this processor is {processor_kind()}", highlight=False, soft_wrap=True)
 
 
 models_app.command("fetch", help=help_of(models_fetch))(models_fetch)

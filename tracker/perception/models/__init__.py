@@ -6,6 +6,7 @@ from tracker.perception.models.numbers import (
     file_to_run,
     model_to_run,
     processor_features,
+    processor_kind,
     runs_here,
 )
 from tracker.perception.models.store import ModelState, ModelStatus, ModelStore
@@ -25,5 +26,6 @@ __all__ = [
     "find_model",
     "model_to_run",
     "processor_features",
+    "processor_kind",
     "runs_here",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import platform
 from functools import cache
 from pathlib import Path
@@ -15,6 +16,10 @@ _CPUINFO = Path("/proc/cpuinfo")
 #: the first alone, on which 8 bits were measured: 0.55 of the time. ARM's have not been.
 _FAST = frozenset({"avx512_vnni"})
 _EXACT = _FAST | {"avx_vnni", "asimddp"}
+#: What says how fast a processor multiplies, in Linux' names.
+_INSTRUCTION_SETS = (
+    "avx2", "fma", "avx512f", "avx_vnni", "avx512_vnni", "avx512_bf16", "asimd", "asimddp", "i8mm",
+)  # fmt: skip
 
 
 def model_to_run(name: str, numbers: str, provider: str = "cpu") -> str:
@@ -79,3 +84,10 @@ def processor_features() -> frozenset[str]:
         if key.strip() in ("flags", "Features"):
             return frozenset(words.split())
     return frozenset()
+
+
+def processor_kind() -> str:
+    """On what a figure was measured, such as "x86_64, 2 processors: avx2, fma"."""
+    named = ", ".join(name for name in _INSTRUCTION_SETS if name in processor_features())
+    sets = named or "instruction sets unknown"
+    return f"{platform.machine()}, {os.cpu_count()} processors: {sets}"

@@ -1,7 +1,13 @@
 import pytest
 
 from tracker.errors import ConfigError
-from tracker.perception.models import model_to_run, numbers, processor_features, runs_here
+from tracker.perception.models import (
+    model_to_run,
+    numbers,
+    processor_features,
+    processor_kind,
+    runs_here,
+)
 
 
 @pytest.fixture
@@ -72,3 +78,11 @@ def test_linux_tells_what_the_processor_can(tmp_path, monkeypatch, text, found):
         assert processor_features() == found
     finally:
         processor_features.cache_clear()
+
+
+def test_figures_can_say_on_which_processor_they_were_measured(processor, monkeypatch):
+    processor("avx2", "fma", "sse2")
+    monkeypatch.setattr(numbers.os, "cpu_count", lambda: 2)
+    assert processor_kind() == "x86_64, 2 processors: avx2, fma"
+    processor(machine="riscv64")
+    assert processor_kind() == "riscv64, 2 processors: instruction sets unknown"
