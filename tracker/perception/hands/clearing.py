@@ -24,7 +24,7 @@ _SHRINK, _LEFT = 4, 0.25 * float(np.linalg.norm((0.114, 0.587, 0.299)))
 #: What differs by so many standard deviations of noise has moved.
 _MOVED_STD = 5.0
 #: Measured at every so many rows and columns: reading few rows is what keeps it cheap.
-_STEP = (16, 4)
+_STEP = (32, 4)
 _MEDIAN_STD = 0.6745  # median of what is normally distributed, without its sign
 
 
