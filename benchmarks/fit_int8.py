@@ -4,10 +4,11 @@
     python benchmarks/fit_int8.py --check ../shared/data/photos ../shared/data/people/photos
 
 The detector looks at drawn callers; what its models are given is kept. In each block that computes
-in 8 bits the range of what it reads is measured, and what its output lacks on average, block after
-block. `--write` puts that into `tracker/perception/models/int8/ranges.npz`; raise
-`CONVERTER_VERSION` with it. Drawn people of another seed, and photos, say how far the results move
-from those in single precision. No real picture takes part in the fit.
+in 8 bits these are measured: the range of what it reads, how far each channel of its wide part
+reaches, and what its output lacks on average, block after block. `--write` puts that into
+`tracker/perception/models/int8/ranges.npz`; raise `CONVERTER_VERSION` with it. Drawn people of
+another seed, and photos, say how far the results move from those in single precision. No real
+picture takes part in the fit.
 """
 
 from __future__ import annotations
@@ -32,7 +33,13 @@ from tracker.evaluation.detection.scenes import caller_scene, draw_conditions
 from tracker.perception import open_detector
 from tracker.perception.models import ModelStore
 from tracker.perception.models.catalog import INT8_MODELS
-from tracker.perception.models.int8.quantize import Block, BlockRange, find_blocks, quantize
+from tracker.perception.models.int8.quantize import (
+    CLIPPED_AT,
+    Block,
+    BlockRange,
+    find_blocks,
+    quantize,
+)
 from tracker.perception.models.int8.ranges import load_ranges, save_ranges
 from tracker.simulation import simulate
 
@@ -42,10 +49,12 @@ DISTANCES_M = (0.8, 1.2, 1.8, 2.6, 3.6)
 SCENES, FIT_INPUTS, CHECK_INPUTS = 30, 90, 600
 #: So many blocks at the beginning stay in single precision, since they would move the results.
 LEFT_FLOAT = {
-    "hand_landmark_lite": 3,
-    "hand_landmark_full": 1,
+    "hand_landmark_lite": 0,
+    "hand_landmark_full": 0,
     "pose_detection": 1,
 }
+#: How much farther than on the pictures of the fit a channel may reach, and how far at least.
+MARGIN, REACH_MIN = 1.25, 0.2
 #: A hand of which the model in single precision is so sure must not be lost.
 SURE, LOST = 0.8, 0.5
 Inputs = dict[str, list[np.ndarray]]
@@ -149,8 +158,20 @@ def means(content: bytes, names: list[str], images: list[np.ndarray]) -> dict[st
     return {name: np.mean(parts[name], axis=0) for name in names}
 
 
+def reaches(content: bytes, names: list[str], images: list[np.ndarray]) -> dict[str, np.ndarray]:
+    """Up to which value each channel of the values of these names counts."""
+    highest = dict.fromkeys(names, np.float32(-np.inf))
+    for values in answers(opened(content, *names), names, images):
+        for name, value in zip(names, values, strict=True):
+            highest[name] = np.maximum(highest[name], value.max(axis=(0, 2, 3)))
+    return {
+        name: np.clip(MARGIN * value, REACH_MIN, CLIPPED_AT).astype(np.float16)
+        for name, value in highest.items()
+    }
+
+
 def fit(content: bytes, left_float: int, images: list[np.ndarray]) -> dict[str, BlockRange]:
-    """Ranges and shifts of the blocks of one model."""
+    """Ranges, reaches and shifts of the blocks of one model."""
     blocks: list[Block] = list(find_blocks(onnx.load_from_string(content).graph))[left_float:]
     read = sorted({block.widen.input[0] for block in blocks})
     low, high = dict.fromkeys(read, 0.0), dict.fromkeys(read, 0.0)
@@ -159,11 +180,12 @@ def fit(content: bytes, left_float: int, images: list[np.ndarray]) -> dict[str, 
             low[name] = min(low[name], float(value.min()))
             high[name] = max(high[name], float(value.max()))
     wanted = means(content, [block.name for block in blocks], images)
+    reach = reaches(content, [block.widen.output[0] for block in blocks], images)
     ranges: dict[str, BlockRange] = {}
     for block in blocks:
-        source = block.widen.input[0]
+        source, wide = block.widen.input[0], reach[block.widen.output[0]]
         nothing = np.zeros(len(wanted[block.name]), np.float32)
-        ranges[block.name] = BlockRange(low[source], high[source], nothing)
+        ranges[block.name] = BlockRange(low[source], high[source], wide, nothing)
         found = means(quantize(content, ranges), [block.name], images)[block.name]
         shift = (wanted[block.name] - found).astype(np.float32)
         ranges[block.name] = ranges[block.name]._replace(shift=shift)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from tracker.errors import ModelFileError
 
 # Raise it with every change that alters the converted files: files of other versions are stale.
-CONVERTER_VERSION = 1
+CONVERTER_VERSION = 2
 
 WHEEL_REQUIREMENT = "mediapipe==0.10.21"  # the last series that carries the model files
 WHEEL_BYTES = 35_622_638  # of the x86-64 Linux wheel for Python 3.11; for progress and messages

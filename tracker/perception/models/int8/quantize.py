@@ -3,11 +3,12 @@
 A model of the MobileNet family is a thin stream of values to which blocks add: a convolution that
 widens it, one that looks around in each channel, and one that makes it thin again. Inside of a
 block values lie between 0 and 6 and bear 8 bits; the stream stays in single precision, since what
-is lost there is lost to all blocks that follow. A processor with instructions for 8-bit products
-does such a block in less than half the time.
+is lost there is lost to all blocks that follow. A channel of the wide part that does not reach 6
+is stretched until it does, and shrunk again where it is looked around in. A processor with
+instructions for 8-bit products does such a block in less than half the time.
 
 Source: Jacob et al., "Quantization and Training of Neural Networks for Efficient
-    Integer-Arithmetic-Only Inference", CVPR 2018; the shifts: Nagel et al., "Data-Free
+    Integer-Arithmetic-Only Inference", CVPR 2018; stretching and shifts: Nagel et al., "Data-Free
     Quantization Through Weight Equalization and Bias Correction", ICCV 2019.
 """
 
@@ -24,8 +25,9 @@ from onnx import helper, numpy_helper
 #: ONNX Runtime's own operators; the fast kernels want channels last.
 _RUNTIME_DOMAIN = "com.microsoft"
 _LAST, _FIRST = (0, 2, 3, 1), (0, 3, 1, 2)
-#: What a clipped value of 255 means: blocks end at 6.
-_STEP = np.float32(6.0 / 255.0)
+#: Where blocks clip, and what a clipped value of 255 means.
+CLIPPED_AT = 6.0
+_STEP = np.float32(CLIPPED_AT / 255.0)
 #: Biases are counted in 32 bits; a channel of tiny weights must not overflow them.
 _BIAS_MAX = 2.0**30
 
@@ -36,12 +38,14 @@ class BlockRange(NamedTuple):
     Attributes:
         low: Least value of the stream where the block reads it; not above 0.
         high: The largest one; not below 0.
+        reach: Shape (W,): up to which value each channel of its wide part counts; in (0, 6].
         shift: Shape (C,): what its output lacks on average, by channel, after what blocks before
             it lack was made up for.
     """
 
     low: float
     high: float
+    reach: NDArray[np.float16]
     shift: NDArray[np.float32]
 
 
@@ -131,12 +135,18 @@ def _in_bytes(
         return name
 
     inner = (constant("inner_step", _STEP), constant("inner_zero", np.uint8(0)))
+    stretch = (CLIPPED_AT / measured.reach.astype(np.float32))[:, None, None, None]
 
     def convolution(
-        node: onnx.NodeProto, source: str, step: np.float32, read: tuple[str, str]
+        node: onnx.NodeProto,
+        weights: NDArray[Any],
+        bias: NDArray[Any],
+        source: str,
+        step: np.float32,
+        read: tuple[str, str],
     ) -> onnx.NodeProto:
         name = node.output[0]
-        weights, scale, bias = _rounded(constants[node.input[1]], constants[node.input[2]], step)
+        weights, scale, bias = _rounded(weights, bias, step)
         inputs = [
             *(source, *read),
             *(constant(f"{name}_bytes", weights), constant(f"{name}_scale", scale)),
@@ -152,6 +162,8 @@ def _in_bytes(
             **{item.name: helper.get_attribute_value(item) for item in node.attribute},
         )
 
+    widening = constants[widen.input[1]] * stretch, constants[widen.input[2]] * stretch.ravel()
+    looking = constants[around.input[1]] / stretch, constants[around.input[2]]
     name, source = narrow.output[0], widen.input[0]
     read = (constant(f"{name}_read_step", step), constant(f"{name}_read_zero", zero))
     weights, scale, _ = _rounded(
@@ -166,8 +178,8 @@ def _in_bytes(
     return [
         helper.make_node("Transpose", [source], [f"{name}_read"], perm=_LAST),
         helper.make_node("QuantizeLinear", [f"{name}_read", *read], [f"{name}_read_q"]),
-        convolution(widen, f"{name}_read_q", step, read),
-        convolution(around, f"{widen.output[0]}_q", _STEP, inner),
+        convolution(widen, *widening, f"{name}_read_q", step, read),
+        convolution(around, *looking, f"{widen.output[0]}_q", _STEP, inner),
         helper.make_node(
             "MatMulIntegerToFloat", product, [f"{name}_last"], domain=_RUNTIME_DOMAIN
         ),

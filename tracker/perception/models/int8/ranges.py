@@ -17,19 +17,22 @@ _FILE = Path(__file__).with_name("ranges.npz")
 
 def load_ranges(name: str) -> dict[str, BlockRange]:
     """What was measured of the blocks of a model, by their names."""
+    found: dict[str, BlockRange] = {}
     with np.load(_FILE) as stored:
-        return {
-            block: BlockRange(float(values[0]), float(values[1]), values[2:])
-            for model, block, values in ((*key.split("/"), stored[key]) for key in stored.files)
-            if model == name
-        }
+        for model, block, _ in (key.split("/") for key in stored.files):
+            if model == name and block not in found:
+                low, high = stored[f"{model}/{block}/ends"].tolist()
+                reach, shift = (stored[f"{model}/{block}/{part}"] for part in ("reach", "shift"))
+                found[block] = BlockRange(low, high, reach, shift)
+    return found
 
 
 def save_ranges(ranges: dict[str, dict[str, BlockRange]]) -> None:
     """Replace the file that comes with the package."""
-    arrays: dict[str, Any] = {
-        f"{model}/{block}": np.array([found.low, found.high, *found.shift], np.float32)
-        for model, blocks in ranges.items()
-        for block, found in blocks.items()
-    }
+    arrays: dict[str, Any] = {}
+    for model, blocks in ranges.items():
+        for block, found in blocks.items():
+            arrays[f"{model}/{block}/ends"] = np.array([found.low, found.high], np.float32)
+            arrays[f"{model}/{block}/reach"] = found.reach
+            arrays[f"{model}/{block}/shift"] = found.shift
     np.savez_compressed(_FILE, **arrays)

@@ -32,8 +32,11 @@ def _clip(source: str) -> onnx.NodeProto:
     return helper.make_node("Clip", [source, "zero", "six"], [f"{source}_relu6"])
 
 
-def _residual(*, shown: str = "out") -> bytes:
-    """One inverted residual on a stream, channels first; `shown` is its output."""
+def _residual(*, shown: str = "out", loud: float = 1.0) -> bytes:
+    """One inverted residual on a stream, channels first.
+
+    Its output is `shown`, and its wide part so `loud`.
+    """
     rng = np.random.default_rng(5)
     nodes = [
         _convolution("wide", "image"),
@@ -51,6 +54,8 @@ def _residual(*, shown: str = "out") -> bytes:
     ):
         constants[f"{name}_weights"] = rng.normal(0, 0.5, shape).astype(np.float32)
         constants[f"{name}_bias"] = rng.normal(1, 0.5, shape[0]).astype(np.float32)
+    for part in ("weights", "bias"):
+        constants[f"wide_{part}"] *= np.float32(loud)
     constants["wide_weights"][3] = 0.0  # a channel that says the same everywhere
     ends = [
         helper.make_tensor_value_info(name, TensorProto.FLOAT, ["batch", channels, SIDE, SIDE])
@@ -78,8 +83,9 @@ def _image() -> np.ndarray:
     return values.astype(np.float32)
 
 
-def _range(shift: float = 0.0) -> dict[str, BlockRange]:
-    return {"narrow": BlockRange(-2.0, 3.0, np.full(CHANNELS, shift, np.float32))}
+def _range(shift: float = 0.0, reach: float = 6.0) -> dict[str, BlockRange]:
+    reaches = np.full(WIDE, reach, np.float16)
+    return {"narrow": BlockRange(-2.0, 3.0, reaches, np.full(CHANNELS, shift, np.float32))}
 
 
 def test_a_block_in_bytes_says_nearly_the_same() -> None:
@@ -94,6 +100,25 @@ def test_a_shift_is_added_to_each_channel() -> None:
     plain = _residual()
     found, shifted = (_run(quantize(plain, _range(shift)), _image()) for shift in (0.0, 0.5))
     np.testing.assert_allclose(shifted - found, 0.5, atol=1e-5)
+
+
+def test_channels_that_reach_less_far_are_told_in_finer_steps() -> None:
+    plain, step = _residual(loud=0.01), np.float32(5.0 / 255.0)
+    image = np.rint(_image() / step) * step  # so that nothing is lost where it is read
+    expected = _run(plain, image)
+    coarse, fine = (
+        np.abs(_run(quantize(plain, _range(reach=reach)), image) - expected).mean()
+        for reach in (6.0, 0.1)
+    )
+    assert 0.0 < fine < 0.8 * coarse  # what is left comes of what follows
+
+
+def test_values_beyond_the_reach_are_cut_to_it() -> None:
+    plain = _residual()
+    far, near = (_run(quantize(plain, _range(reach=reach)), _image()) for reach in (6.0, 1e-3))
+    nothing_wide = _run(quantize(_residual(loud=0.0), _range()), _image())
+    assert np.abs(far - nothing_wide).max() > 1.0
+    np.testing.assert_allclose(near, nothing_wide, atol=0.02)
 
 
 def test_values_beyond_the_range_are_cut_to_it() -> None:
@@ -138,6 +163,7 @@ def test_what_was_measured_belongs_to_blocks_of_the_model(
     assert len(ranges) >= 8
     for block, found in ranges.items():
         assert found.low <= 0.0 < found.high
+        assert 0.0 < found.reach.min() <= found.reach.max() <= 6.0
         assert found.shift.shape == (channels[block],)
 
 
