@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated
 
 import cv2
@@ -40,6 +41,7 @@ class Detections(Rows):
     score: FloatArray
 
     @staticmethod
+    @cache
     def none(keypoints: int = 7) -> Detections:
         """Nothing at all."""
         return Detections(np.zeros((0, 4)), np.zeros((0, keypoints, 2)), np.zeros(0))
@@ -146,12 +148,15 @@ def decode_rows(
         anchors: Shape (A, 2), in pixels of the input.
         confidence: Score from which a row counts.
     """
+    count = (boxes.shape[1] - 4) // 2
     sure = np.flatnonzero(logits >= float(np.log(confidence / (1.0 - confidence))))
     sure = sure[np.isfinite(boxes[sure]).all(axis=-1)]
+    if len(sure) == 0:
+        return Detections.none(count)
     score = probability(logits[sure])
     rows, anchor = boxes[sure].astype(np.float64), anchors[sure]
     center, half = rows[:, :2] + anchor, rows[:, 2:4] / 2
-    keypoints = rows[:, 4:].reshape(len(rows), (boxes.shape[1] - 4) // 2, 2) + anchor[:, None]
+    keypoints = rows[:, 4:].reshape(len(rows), count, 2) + anchor[:, None]
     corners = np.concatenate([center - half, center + half], axis=-1)
     return merge_rows(Detections(corners, keypoints, score))
 
@@ -164,14 +169,18 @@ def merge_rows(found: Detections) -> Detections:
     Args:
         found: In any order and any pixels.
     """
+    if len(found) == 0:
+        return Detections.none(found.keypoints_px.shape[1])
+    is_same = box_overlap(found.boxes_px, found.boxes_px) > SAME_OVERLAP
     left = np.argsort(-found.score, kind="stable")
-    merged = [Detections.none(found.keypoints_px.shape[1])]
+    boxes_px, keypoints_px, score = [], [], []
     while len(left):
-        with_best = box_overlap(found.boxes_px[left[:1]], found.boxes_px[left])[0] > SAME_OVERLAP
+        with_best = is_same[left[0], left]
         with_best[0] = True  # a box without area does not even overlap itself
-        same = found[left[with_best]]
-        weight = same.score / same.score.sum()
-        keypoints = np.tensordot(weight, same.keypoints_px, axes=1)
-        merged.append(Detections((weight @ same.boxes_px)[None], keypoints[None], same.score[:1]))
+        same = left[with_best]
+        weight = found.score[same] / found.score[same].sum()
+        boxes_px.append(weight @ found.boxes_px[same])
+        keypoints_px.append(np.tensordot(weight, found.keypoints_px[same], axes=1))
+        score.append(found.score[same[0]])
         left = left[~with_best]
-    return Detections.concatenate(*merged)
+    return Detections(np.stack(boxes_px), np.stack(keypoints_px), np.array(score))
