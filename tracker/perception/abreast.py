@@ -43,5 +43,7 @@ class Abreast:
             work()
         finally:
             for helper in waiting:
-                helper.result()
+                # One that has not begun has nothing left to do; in a forked process none begins.
+                if not helper.cancel():
+                    helper.result()
         return [returned[row] for row in range(len(calls))]

@@ -43,3 +43,13 @@ def test_after_an_error_others_can_run():
     with pytest.raises(ZeroDivisionError):
         abreast.run([lambda: 1 / 0, lambda: 1 / 0])
     assert abreast.run([lambda: 1, lambda: 2]) == [1, 2]
+
+
+def test_nobody_waits_for_a_thread_that_does_not_come():
+    abreast, is_over = Abreast(2), threading.Event()
+    abreast.run([int, int])
+    abreast._helpers.submit(is_over.wait)  # as after a fork, which leaves the threads behind
+    try:
+        assert abreast.run([lambda: 1, lambda: 2]) == [1, 2]
+    finally:
+        is_over.set()
