@@ -16,6 +16,8 @@ from tracker.wording import counted
 
 #: Slices that fit below one another and still can be read.
 _SLICES = 8
+#: From this share on only powers of ten are written below an axis: more would touch each other.
+_WIDE = 200.0
 
 
 def draw_tuning(tuning: Tuning, path: str | Path) -> None:
@@ -107,7 +109,8 @@ def _draw_slice(axes: Axes, tuning: Tuning, name: str) -> None:
                   markeredgecolor=INK, clip_on=False)  # fmt: skip
     if search is not None and search.log:
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        is_wide = max(tried) > _WIDE * min(tried)
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0,) if is_wide else (1.0, 3.0)))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter(NullFormatter())
     share = tuning.importance.get(name)
