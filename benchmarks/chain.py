@@ -1,9 +1,9 @@
 """Does the whole chain keep up with 10 Hz? Median and tail of every stage, on the demo's scene.
 
-    python benchmarks/chain.py [--scene restaurant] [--seconds 20]
+    python benchmarks/chain.py [--scene restaurant] [--seconds 20] [--numbers auto]
 
 Per processed image: find hands as configured, the second opinion included, range and track, draw
-and write the outputs; then the share of one period at the configured rate. Run it on an idle
+and write the outputs; then the median's share of one period at the configured rate. Run it on an idle
 machine; other work shows in the tail first.
 """
 
@@ -77,17 +77,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scene", default="restaurant")
     parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--numbers", choices=("auto", "fp32", "int8"), default="auto")
     words = parser.parse_args()
     ensure_models(ModelStore())
     compile_tracker(print)
     print(processor_kind())
     for complexity in (0, 1):
-        config = Config(model_complexity=complexity)
+        config = Config(model_complexity=complexity, model_numbers=words.numbers)
         period_ms = 1e3 / config.processing_rate
         stages = run(config, words.scene, words.seconds)
         count = len(stages["whole chain"])
-        title = f"{words.scene}, 640x480, complexity {complexity}, {count} images"
-        table = Table("stage", "median", "p99", f"median of {period_ms:.0f} ms", title=title)
+        title = (
+            f"{words.scene}, 640x480, complexity {complexity}, models {words.numbers}, "
+            f"{count} images"
+        )
+        table = Table("stage", "median", "p99", f"share of {period_ms:.0f} ms", title=title)
         for name, times_ms in stages.items():
             median = np.median(times_ms)
             tail = np.percentile(times_ms, 99)

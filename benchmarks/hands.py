@@ -132,14 +132,14 @@ def busy_core() -> Iterator[None]:
 
 def measure(hands: int, frames: int, python: str) -> dict[str, np.ndarray]:
     """Seconds of each frame of each contender, in turn; ends where they find other hands."""
-    from tracker.perception.models import runs_here
+    from tracker.perception.models import ModelStore, runs_here
 
     picture, peer = drawn_hands(hands), None
     steps: dict[str, Step] = {
         "followed": product(max_hands=hands),
         "searching": product(max_hands=hands + 4),
     }
-    if runs_here("auto") != runs_here("fp32"):
+    if runs_here(ModelStore(), "auto") != runs_here(ModelStore(), "fp32"):
         steps["fp32"] = product(max_hands=hands, model_numbers="fp32")
     if subprocess.run([python, "-c", "import mediapipe"], capture_output=True).returncode == 0:
         peer = MediaPipe(python, hands)

@@ -11,6 +11,13 @@ from tracker.cli.options import JsonOption, console, errors, print_json
 from tracker.outputs import check_inputs_stay
 from tracker.terminal.command_help import help_of
 
+#: What `model_complexity` has to be for a file to run.
+_USED_WITH = {
+    f"{name}_{size}": f"complexity {number}"
+    for name in ("palm_detection", "hand_landmark")
+    for number, size in enumerate(("lite", "full"))
+}
+
 models_app = typer.Typer(help="Fetch the hand models, or show which are there.")
 
 
@@ -57,11 +64,12 @@ def models_list(as_json: JsonOption = False) -> None:
     from rich.table import Table
 
     from tracker.config import Config
-    from tracker.perception.models import ModelStore, processor_kind, runs_here
+    from tracker.perception.models import ModelState, ModelStore, processor_kind, runs_here
+    from tracker.perception.models.catalog import INT8_SUFFIX
 
     store = ModelStore()
     rows = store.status()
-    running = runs_here(Config().model_numbers)
+    running = runs_here(store, Config().model_numbers)
     if as_json:
         print_json(
             [
@@ -75,11 +83,13 @@ def models_list(as_json: JsonOption = False) -> None:
     table = Table("model", "state", "used here", "size")
     for row in rows:
         size = f"{row.size_bytes / 1e6:.1f} MB" if row.size_bytes else ""
-        runs = "yes" if row.name in running else "no"
-        table.add_row(row.name, row.state.value, runs, size)
+        used = _USED_WITH.get(row.name.removesuffix(INT8_SUFFIX), "yes")
+        table.add_row(row.name, row.state.value, used if row.name in running else "no", size)
     console.print(table)
     console.print(f"each as MODEL.onnx in {store.directory}", highlight=False, soft_wrap=True)
-    console.print(f"this processor is {processor_kind()}", highlight=False, soft_wrap=True)
+    console.print(f"this processor is {processor_kind()}", highlight=False)
+    if any(row.state is not ModelState.PRESENT for row in rows):
+        console.print("what is not present is not used; run 'raised-hand models fetch'")
 
 
 models_app.command("fetch", help=help_of(models_fetch))(models_fetch)

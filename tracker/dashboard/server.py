@@ -63,8 +63,8 @@ class DashboardServer(Closing):
             import websockets  # noqa: F401  # uvicorn would answer no WebSocket without
         except ImportError as error:
             raise ConfigError(
-                f"The dashboard needs the extra `live` ({error.name} is not installed): "
-                'pip install "raised-hand-tracker[live]"'
+                f"The page needs the extra `live` ({error.name} is not installed): run 'pip "
+                "install -e \".[live]\"' in the project's folder"
             ) from error
         self._dashboard = dashboard
         self._token = "" if host in _LOOPBACK else secrets.token_urlsafe(16)

@@ -62,14 +62,16 @@ def file_to_run(store: ModelStore, name: str, numbers: str, provider: str = "cpu
     return name if numbers == "auto" and not store.has(file) else file
 
 
-def runs_here(numbers: str, provider: str = "cpu") -> frozenset[str]:
-    """The names in the catalog of all files that run; the rest is there in vain.
+def runs_here(store: ModelStore, numbers: str, provider: str = "cpu") -> frozenset[str]:
+    """The names in the catalog of all files of a store that run; the rest is there in vain.
 
     Raises:
         ConfigError: As `model_to_run`.
+        ModelFileError: As `file_to_run`.
     """
     plain = [entry.name for entry in MODELS if not entry.in_bytes]
-    return frozenset(model_to_run(name, numbers, provider) for name in plain)
+    names = (file_to_run(store, name, numbers, provider) for name in plain)
+    return frozenset(name for name in names if store.has(name))
 
 
 @cache

