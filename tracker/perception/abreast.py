@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -21,14 +22,16 @@ class Abreast:
 
     def __init__(self, threads: int) -> None:
         self.threads = threads
-        self._helpers = ThreadPoolExecutor(threads - 1, "models") if threads > 1 else None
+        self._helpers: ThreadPoolExecutor | None = None
+        self._process = 0
 
     def run(self, calls: Sequence[Callable[[], T]]) -> list[T]:
         """What each call returns; they begin in this order, so the longest should come first.
 
         Raises what a call raises, once the others are done.
         """
-        if self._helpers is None or len(calls) < 2:
+        helpers = min(self.threads, len(calls)) - 1
+        if helpers < 1:
             return [call() for call in calls]
         returned: dict[int, T] = {}
         rows = iter(range(len(calls)))  # shared: each thread takes the next
@@ -37,13 +40,19 @@ class Abreast:
             for row in rows:
                 returned[row] = calls[row]()
 
-        helpers = min(self.threads, len(calls)) - 1
-        waiting = [self._helpers.submit(work) for _ in range(helpers)]
+        pool = self._pool()
+        waiting = [pool.submit(work) for _ in range(helpers)]
         try:
             work()
         finally:
-            for helper in waiting:
-                # One that has not begun has nothing left to do; in a forked process none begins.
-                if not helper.cancel():
-                    helper.result()
+            wait(waiting)
+        for helper in waiting:
+            helper.result()
         return [returned[row] for row in range(len(calls))]
+
+    def _pool(self) -> ThreadPoolExecutor:
+        """The other threads; a forked process has none of its parent's."""
+        if self._helpers is None or self._process != os.getpid():
+            self._helpers = ThreadPoolExecutor(self.threads - 1, "models")
+            self._process = os.getpid()
+        return self._helpers

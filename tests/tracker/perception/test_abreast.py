@@ -45,11 +45,28 @@ def test_after_an_error_others_can_run():
     assert abreast.run([lambda: 1, lambda: 2]) == [1, 2]
 
 
-def test_nobody_waits_for_a_thread_that_does_not_come():
-    abreast, is_over = Abreast(2), threading.Event()
+def test_an_error_waits_for_all_other_calls():
+    begun, go_on, ended = threading.Barrier(3, timeout=5.0), threading.Event(), []
+
+    def fail():
+        begun.wait()
+        threading.Timer(0.1, go_on.set).start()
+        raise ZeroDivisionError
+
+    def last():
+        begun.wait()
+        go_on.wait(5.0)
+        ended.append(True)
+
+    with pytest.raises(ZeroDivisionError):
+        Abreast(3).run([last, fail, last])
+    assert ended == [True, True]
+
+
+def test_a_forked_process_has_threads_of_its_own(monkeypatch):
+    abreast = Abreast(2)
     abreast.run([int, int])
-    abreast._helpers.submit(is_over.wait)  # as after a fork, which leaves the threads behind
-    try:
-        assert abreast.run([lambda: 1, lambda: 2]) == [1, 2]
-    finally:
-        is_over.set()
+    abreast._helpers.shutdown()  # a fork leaves the threads behind
+    monkeypatch.setattr("tracker.perception.abreast.os.getpid", lambda: -1)
+    both_are_here = threading.Barrier(2, timeout=5.0)
+    assert sorted(abreast.run([both_are_here.wait, both_are_here.wait])) == [0, 1]
