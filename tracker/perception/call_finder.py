@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,15 +64,25 @@ class Weighed:
 class CallFinder:
     """A hand detector whose hands are raised where the evidence says that they call.
 
+    With another `raise_rule` the hands' own verdict stays.
+
     Args:
         hands: Finds hands.
         watch: Finds the people around them; None asks nobody.
         config: The perception and pose groups.
+        open_watch: Opens such a watch, where the evidence is asked for later.
     """
 
-    def __init__(self, hands: HandFinder, watch: PeopleWatch | None, config: Config) -> None:
+    def __init__(
+        self,
+        hands: HandFinder,
+        watch: PeopleWatch | None,
+        config: Config,
+        open_watch: Callable[[Config], PeopleWatch] | None = None,
+    ) -> None:
         self._hands = hands
         self._watch = watch
+        self._open_watch = open_watch
         self._config = config
         self._memory = HandMemory()
         self._prior = PlacePrior()
@@ -89,6 +100,8 @@ class CallFinder:
 
         After those that were found comes a schematic hand for each arm that is up and has none.
         """
+        if self._config.raise_rule != "evidence":
+            return self._hands.find(image, hints)
         if self._last is not None and not continues(self._last, image):
             self._memory.reset()
         self._last = image
@@ -179,8 +192,19 @@ class CallFinder:
             self._watch.reset()
 
     def configure(self, config: Config) -> None:
-        """Take over changed parameters, from the next image on; raises as the hand detector's."""
+        """Take over changed parameters, from the next image on.
+
+        Raises:
+            ModelFileError: Other models are needed and cannot be opened; nothing has changed then.
+        """
+        watch = self._watch
+        if watch is None and self._open_watch is not None and config.raise_rule == "evidence":
+            watch = self._open_watch(config)
         self._hands.configure(config)
+        self._watch = watch
+        if config.raise_rule != self._config.raise_rule:
+            self._last, self._told = None, NO_HINTS
+            self._memory.reset()
         self._config = config
         if self._watch is not None:
             self._watch.configure(config)

@@ -31,11 +31,14 @@ def open_detector(config: Config, store: ModelStore | None = None) -> HandDetect
     if config.detector == "mediapipe":
         return MediapipeHands(config)
     hands = HandFinder(config, store)
-    if config.raise_rule != "evidence":
-        return hands
-    asks_bodies = config.pose_opinion != "none"
-    watch = PeopleWatch(_open_look(config, store)) if asks_bodies else None
-    return CallFinder(hands, watch, config)
+    if config.pose_opinion == "none":
+        return CallFinder(hands, None, config)
+
+    def open_watch(config: Config) -> PeopleWatch:
+        return PeopleWatch(_open_look(config, store))
+
+    watch = open_watch(config) if config.raise_rule == "evidence" else None
+    return CallFinder(hands, watch, config, open_watch)
 
 
 def _open_look(config: Config, store: ModelStore) -> BodyLook:

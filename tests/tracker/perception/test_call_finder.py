@@ -5,6 +5,7 @@ import pytest
 
 from tracker.config import Config
 from tracker.containers import CameraImage, Hands, PerceptionWork, Refusal
+from tracker.errors import ModelFileError
 from tracker.perception import HandDetector
 from tracker.perception.bodies.bodies import Bodies
 from tracker.perception.bodies.people_watch import PeopleWatch
@@ -52,6 +53,9 @@ class Look:
 
     def again(self, bgr, body):
         return self.bodies
+
+    def configure(self, config):
+        pass
 
 
 def image(number):
@@ -178,3 +182,45 @@ def test_how_a_verdict_came_about_can_be_looked_at(body, open_hand):
     assert finder.weighed is None
     finder.find(image(0))
     assert finder.weighed.evidence.shape[0] == len(finder.weighed.belief) == 1
+
+
+def test_another_rule_leaves_the_hands_their_own_verdict(open_hand, body):
+    hands = Told(open_hand((148, 70)))
+    finder = CallFinder(hands, PeopleWatch(Look(body(**UP))), Config())
+    finder.configure(Config(raise_rule="palm"))
+    assert finder.find(image(0)) is hands.answer
+    finder.configure(Config())
+    assert finder.find(image(1)) is not hands.answer
+
+
+def test_bodies_are_opened_when_the_evidence_is_asked_for(open_hand, body):
+    opened = []
+
+    def open_watch(config):
+        opened.append(config.raise_rule)
+        return PeopleWatch(Look(body(**UP)))
+
+    hands, palm = Told(open_hand((148, 70))), Config(raise_rule="palm")
+    finder = CallFinder(hands, None, palm, open_watch)
+    finder.find(image(0))
+    finder.configure(palm.replace(palm_raised_threshold=2.0))
+    assert opened == []
+    for _ in range(2):
+        finder.configure(Config())
+    assert opened == ["evidence"]
+    for number in range(1, 9):
+        answer = finder.find(image(number))
+    assert answer.raised.tolist() == [True]
+    assert len(finder.weighed.bodies) == 1
+
+
+def test_a_rule_whose_models_cannot_be_opened_changes_nothing(open_hand):
+    def fail(config):
+        raise ModelFileError("absent")
+
+    hands, palm = Told(open_hand((148, 70))), Config(raise_rule="palm")
+    finder = CallFinder(hands, None, palm, fail)
+    with pytest.raises(ModelFileError):
+        finder.configure(Config())
+    assert hands.calls == []
+    assert finder.find(image(0)) is hands.answer

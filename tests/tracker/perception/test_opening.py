@@ -7,7 +7,7 @@ import pytest
 from tracker.config import Config
 from tracker.containers import CameraImage
 from tracker.errors import ConfigError, ModelFileError
-from tracker.perception import HandDetector, HandFinder, open_detector
+from tracker.perception import HandDetector, open_detector
 from tracker.perception.call_finder import CallFinder
 from tracker.perception.hands.mediapipe_hands import MediapipeHands
 from tracker.perception.models import ModelStore
@@ -21,8 +21,8 @@ from tracker.pipeline import Pipeline
     [
         ({}, CallFinder),
         ({"pose_opinion": "none"}, CallFinder),
-        ({"raise_rule": "palm"}, HandFinder),
-        ({"raise_rule": "image"}, HandFinder),
+        ({"raise_rule": "palm"}, CallFinder),
+        ({"raise_rule": "image"}, CallFinder),
         ({"detector": "pose"}, PoseHands),
     ],
 )
