@@ -3,8 +3,8 @@
     python benchmarks/chain.py [--scene restaurant] [--seconds 20] [--numbers auto]
 
 Per processed image: find hands as configured, the second opinion included, range and track, draw
-and write the outputs; then the median's share of one period at the configured rate. Run it on an idle
-machine; other work shows in the tail first.
+and write the outputs; then the median's share of one period at the configured rate. Run it on an
+idle machine; other work shows in the tail first.
 """
 
 from __future__ import annotations

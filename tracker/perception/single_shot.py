@@ -171,11 +171,11 @@ def merge_rows(found: Detections) -> Detections:
     """
     if len(found) == 0:
         return Detections.none(found.keypoints_px.shape[1])
-    is_same = box_overlap(found.boxes_px, found.boxes_px) > SAME_OVERLAP
     left = np.argsort(-found.score, kind="stable")
     boxes_px, keypoints_px, score = [], [], []
     while len(left):
-        with_best = is_same[left[0], left]
+        best_px, others_px = found.boxes_px[left[:1]], found.boxes_px[left]
+        with_best = box_overlap(best_px, others_px)[0] > SAME_OVERLAP
         with_best[0] = True  # a box without area does not even overlap itself
         same = left[with_best]
         weight = found.score[same] / found.score[same].sum()

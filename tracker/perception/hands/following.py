@@ -134,7 +134,8 @@ class HandFollower:
             hands = Landmarks.concatenate(hands, new_hands)
             rows = np.concatenate([rows, np.full(len(found), -1)])
         hands, again = self._read_again(bgr, hands, rows < 0, read, config)
-        keep = np.flatnonzero(hands.score >= config.tracking_confidence)
+        is_hand = hands.score >= config.tracking_confidence
+        keep = np.flatnonzero(is_hand & _are_shown(hands.points_px, image))
         keep = keep[first_of_each_hand(hands[keep])]
         ended_s = time.perf_counter()
         self.work = PerceptionWork(
@@ -263,6 +264,15 @@ def first_of_each_hand(hands: Landmarks) -> BoolArray:
     longer = np.maximum(side[:, None], side[None, :]) / SIDE_HANDS
     same |= np.linalg.norm(apart[:, :, WRIST], axis=-1) < SAME_WRIST_DISTANCE * longer
     return first_of_each(same, np.argsort(-hands.score, kind="stable").tolist())
+
+
+def _are_shown(points_px: FloatArray, image: CameraImage) -> BoolArray:
+    """Shape (H,): some of a hand lies in the picture, and it has an extent."""
+    is_finite = np.isfinite(points_px).all(axis=(1, 2), keepdims=True)
+    points_px = np.where(is_finite, points_px, 0.0)
+    low, high = points_px.min(axis=1), points_px.max(axis=1)
+    is_within = ((high >= 0.0) & (low <= [image.width, image.height])).all(axis=1)
+    return np.asarray(is_within & ((high - low).max(axis=1) >= 1.0))
 
 
 def _is_inside(points_px: FloatArray, side_px: FloatArray) -> BoolArray:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -84,6 +86,21 @@ def test_every_hand_of_the_first_image_is_found():
     world = World((100, 100), (300, 100), (500, 300))
     hands = follower_of(world).step(image(), Config())
     assert wrists(hands) == [[100, 100], [300, 100], [500, 300]]
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf, 5.0, 5000.0])
+def test_what_has_no_extent_or_place_in_the_picture_is_no_hand(odd):
+    world = World((100, 100), (300, 100))
+    follower, read = follower_of(world), world.read
+    follower.step(image(0), Config())
+
+    def bent(regions):
+        points_px = read(regions).points_px.copy()
+        points_px[1:] = odd
+        return replace(read(regions), points_px=points_px)
+
+    world.read = bent
+    assert wrists(follower.step(image(1), Config())) == [[100, 100]]
 
 
 def test_search_rests_while_as_many_hands_are_followed_as_allowed():
