@@ -11,8 +11,8 @@ from tracker.perception.bodies.bodies import Bodies
 from tracker.perception.bodies.people_watch import PeopleWatch
 from tracker.perception.call_finder import CallFinder
 from tracker.perception.detector import Hints
+from tracker.perception.hands.seen_picture import SeenPicture
 from tracker.perception.movement import Movement
-from tracker.perception.seen_picture import SeenPicture
 
 UP = {"right_elbow": (150, 105), "right_wrist": (148, 70)}
 PHONING = {"right_elbow": (165, 120), "right_wrist": (183, 78)}

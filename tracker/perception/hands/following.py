@@ -24,6 +24,7 @@ from tracker.containers import (
 )
 from tracker.perception.hands.clearing import PictureClearer
 from tracker.perception.hands.landmarks import LandmarkReader, Landmarks
+from tracker.perception.hands.seen_picture import SeenPicture
 from tracker.perception.movement import Movement
 from tracker.perception.pictures import Window, continues
 from tracker.perception.regions import (
@@ -34,7 +35,6 @@ from tracker.perception.regions import (
     regions_from_palms,
 )
 from tracker.perception.search_plan import SearchPlan
-from tracker.perception.seen_picture import SeenPicture
 from tracker.perception.single_shot import Detections, SingleShot
 from tracker.perception.verdict.raise_rules import WRIST
 

@@ -9,10 +9,10 @@ from tracker.containers import CameraImage, Hands, PerceptionWork
 from tracker.perception.detector import NO_HINTS, Hints
 from tracker.perception.hands.following import HandFollower
 from tracker.perception.hands.landmarks import LandmarkReader
+from tracker.perception.hands.seen_picture import SeenPicture
 from tracker.perception.models import ModelStore
 from tracker.perception.models.sessions import open_session
 from tracker.perception.regions import regions_from_landmarks
-from tracker.perception.seen_picture import SeenPicture
 from tracker.perception.single_shot import SingleShot
 from tracker.perception.verdict.raise_rules import judge_raised, rule_refusals
 

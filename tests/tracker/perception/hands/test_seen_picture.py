@@ -1,7 +1,7 @@
 import numpy as np
 
+from tracker.perception.hands.seen_picture import SeenPicture
 from tracker.perception.movement import Movement
-from tracker.perception.seen_picture import SeenPicture
 
 
 def picture(brightness=60, color=0):
