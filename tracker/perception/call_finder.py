@@ -25,7 +25,7 @@ from tracker.perception.bodies.owners import (
 )
 from tracker.perception.bodies.people_watch import LOOK_PLACES, PeopleWatch
 from tracker.perception.detector import NO_HINTS, Hints
-from tracker.perception.hands.hand_finder import HandFinder
+from tracker.perception.hands.hand_finder import HandFinder, runs_otherwise
 from tracker.perception.pictures import continues
 from tracker.perception.pose_hands import draw_hands
 from tracker.perception.verdict.belief import CALLS_FROM
@@ -198,7 +198,8 @@ class CallFinder:
             ModelFileError: Other models are needed and cannot be opened; nothing has changed then.
         """
         watch = self._watch
-        if watch is None and self._open_watch is not None and config.raise_rule == "evidence":
+        is_old = watch is None or runs_otherwise(self._config, config)
+        if self._open_watch is not None and config.raise_rule == "evidence" and is_old:
             watch = self._open_watch(config)
         self._hands.configure(config)
         self._watch = watch

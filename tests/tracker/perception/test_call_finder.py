@@ -208,6 +208,8 @@ def test_bodies_are_opened_when_the_evidence_is_asked_for(open_hand, body):
     for _ in range(2):
         finder.configure(Config())
     assert opened == ["evidence"]
+    finder.configure(Config(inference_threads=1))  # as the hands' models, opened anew
+    assert opened == ["evidence"] * 2
     for number in range(1, 9):
         answer = finder.find(image(number))
     assert answer.raised.tolist() == [True]

@@ -89,9 +89,7 @@ class HandFinder:
         Raises:
             ModelFileError: Other models are needed and cannot be opened; nothing has changed then.
         """
-        old = self._config
-        engine = ("model_complexity", "inference_threads", "execution_provider", "model_numbers")
-        if any(getattr(config, name) != getattr(old, name) for name in engine):
+        if runs_otherwise(self._config, config):
             self._follower = self._open(config)
         self._config = config
 
@@ -117,3 +115,9 @@ class HandFinder:
                 numbers=config.model_numbers,
             ),
         )
+
+
+def runs_otherwise(old: Config, new: Config) -> bool:
+    """Whether models have to be opened anew: other ones, or in another way."""
+    engine = ("model_complexity", "inference_threads", "execution_provider", "model_numbers")
+    return any(getattr(new, name) != getattr(old, name) for name in engine)
