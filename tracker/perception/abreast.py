@@ -21,7 +21,7 @@ class Abreast:
     """
 
     def __init__(self, threads: int) -> None:
-        self.threads = threads
+        self._threads = threads
         self._helpers: ThreadPoolExecutor | None = None
         self._process = 0
 
@@ -30,7 +30,7 @@ class Abreast:
 
         Raises what a call raises, once the others are done.
         """
-        helpers = min(self.threads, len(calls)) - 1
+        helpers = min(self._threads, len(calls)) - 1
         if helpers < 1:
             return [call() for call in calls]
         returned: dict[int, T] = {}
@@ -53,6 +53,6 @@ class Abreast:
     def _pool(self) -> ThreadPoolExecutor:
         """The other threads; a forked process has none of its parent's."""
         if self._helpers is None or self._process != os.getpid():
-            self._helpers = ThreadPoolExecutor(self.threads - 1, "models")
+            self._helpers = ThreadPoolExecutor(self._threads - 1, "models")
             self._process = os.getpid()
         return self._helpers

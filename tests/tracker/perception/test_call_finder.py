@@ -208,7 +208,7 @@ def test_bodies_are_opened_when_the_evidence_is_asked_for(open_hand, body):
     for _ in range(2):
         finder.configure(Config())
     assert opened == ["evidence"]
-    finder.configure(Config(inference_threads=1))  # as the hands' models, opened anew
+    finder.configure(Config(inference_threads=1))  # the hand models are opened again as well
     assert opened == ["evidence"] * 2
     for number in range(1, 9):
         answer = finder.find(image(number))

@@ -118,6 +118,6 @@ class HandFinder:
 
 
 def runs_otherwise(old: Config, new: Config) -> bool:
-    """Whether models have to be opened anew: other ones, or in another way."""
+    """Whether a change of parameters means that the models must be opened again."""
     engine = ("model_complexity", "inference_threads", "execution_provider", "model_numbers")
     return any(getattr(new, name) != getattr(old, name) for name in engine)
